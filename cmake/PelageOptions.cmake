@@ -1,0 +1,32 @@
+# Flags that every target of the project shares, as the interface target pelage_options.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+
+find_program(PELAGE_CCACHE ccache)
+if(PELAGE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PELAGE_CCACHE})
+endif()
+
+add_library(pelage_options INTERFACE)
+target_compile_options(pelage_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi
+  -ffp-contract=off -fno-math-errno)
+# SSSE3 adds nothing between EMU128 and SSE4 that anyone owns.
+target_compile_definitions(pelage_options INTERFACE "HWY_DISABLED_TARGETS=(1LL<<12)" PELAGE_VERSION="${PROJECT_VERSION}")
+if(PELAGE_SCALAR)
+  target_compile_definitions(pelage_options INTERFACE HWY_COMPILE_ONLY_SCALAR)
+endif()
+if(PELAGE_SANITIZE)
+  target_compile_options(pelage_options INTERFACE -fsanitize=${PELAGE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(pelage_options INTERFACE -fsanitize=${PELAGE_SANITIZE})
+endif()
+if(PELAGE_COVERAGE)
+  target_compile_options(pelage_options INTERFACE --coverage -fprofile-update=atomic)
+  target_link_options(pelage_options INTERFACE --coverage)
+endif()

@@ -1,0 +1,19 @@
+# pelage_sources(a.cpp …): adds files of the current folder to the library.
+function(pelage_sources)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  target_sources(pelage PRIVATE ${ARGN})
+endfunction()
+
+# pelage_test(name a_test.cpp …): one test program, one ctest entry. Tests may include internal headers.
+function(pelage_test name)
+  if(NOT PELAGE_TESTS)
+    return()
+  endif()
+  add_executable(${name}_test ${ARGN})
+  target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${name}_test PRIVATE pelage pelage_options GTest::gmock GTest::gtest_main TBB::tbb hwy::hwy
+                                             fmt::fmt embree OpenImageIO::OpenImageIO nlohmann_json::nlohmann_json)
+  target_compile_definitions(${name}_test PRIVATE PELAGE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  add_test(NAME ${name} COMMAND ${name}_test)
+  set_tests_properties(${name} PROPERTIES ENVIRONMENT "PELAGE_DATA=${PELAGE_DATA}" TIMEOUT 300)
+endfunction()

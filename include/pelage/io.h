@@ -1,0 +1,64 @@
+// Files in and out. Content decides the format, never the extension; a file is written whole or not at all.
+#pragma once
+
+#include <pelage/image.h>
+#include <pelage/progress.h>
+#include <pelage/scene.h>
+#include <pelage/strand_set.h>
+#include <pelage/triangle_mesh.h>
+
+#include <string>
+#include <vector>
+
+namespace pelage {
+
+enum class UpAxis { kAuto, kY, kZ };
+
+struct ImportOptions {
+  float scale = 0;               ///< metres per file unit; 0 guesses (see ImportReport)
+  UpAxis up = UpAxis::kAuto;     ///< which file axis points up
+  float default_width = 8e-5f;   ///< metres, for files without widths (human hair is 50–100 µm)
+};
+
+/// What the reader assumed, and what it repaired: printed by `pelage info`.
+struct ImportReport {
+  std::string format;            ///< registered name, e.g. "cyhair"
+  float scale = 1;               ///< metres per file unit that was applied
+  UpAxis up = UpAxis::kY;        ///< that was applied
+  bool scale_guessed = false, up_guessed = false, width_guessed = false;
+  RepairReport repairs;
+  std::vector<std::string> notes;  ///< one sentence each, for people
+};
+
+/// Reads any registered groom format. Throws Error naming byte, line or strand. The result satisfies validate().
+StrandSet read_strands(const std::string& path, const ImportOptions& options = {}, ImportReport* report = nullptr,
+                       const Progress& progress = {});
+
+/// Writes `strands` in the format of `format` (or, when empty, of the extension). Attributes that the format cannot hold
+/// are named in the returned list, one sentence each. Throws Error; then nothing is left at `path` that was not there.
+std::vector<std::string> write_strands(const std::string& path, const StrandSet& strands, const std::string& format = "",
+                                       const Progress& progress = {});
+
+struct FormatInfo {
+  std::string name;                     ///< "cyhair"
+  std::string description;              ///< one line
+  std::vector<std::string> extensions;  ///< without dot
+  bool reads = false, writes = false;
+};
+/// The registered groom formats.
+std::vector<FormatInfo> strand_formats();
+
+/// OBJ, PLY, binary glTF. `scale` metres per file unit. Throws Error.
+TriangleMesh read_mesh(const std::string& path, float scale = 1, UpAxis up = UpAxis::kY);
+void write_mesh(const std::string& path, const TriangleMesh& mesh);
+
+/// EXR, PNG, Radiance HDR. 8-bit images are decoded from sRGB to linear when `linearize`. Throws Error.
+Image read_image(const std::string& path, bool linearize = true);
+/// EXR: half by default, float when `full_float`. PNG: 8 bits, values taken as display-encoded 0…1. HDR: RGBE. Throws Error.
+void write_image(const std::string& path, const Image& image, bool full_float = false);
+
+/// Scene file (JSON, schema in docs/scene.schema.json). Files named in it are found relative to it. Throws Error that
+/// names the key, and for an unknown key the nearest known one.
+Scene read_scene(const std::string& path, const Progress& progress = {});
+
+}  // namespace pelage

@@ -1,0 +1,14 @@
+// Everything public at once.
+#pragma once
+
+#include <pelage/error.h>
+#include <pelage/grow.h>
+#include <pelage/image.h>
+#include <pelage/io.h>
+#include <pelage/progress.h>
+#include <pelage/render.h>
+#include <pelage/runtime.h>
+#include <pelage/scene.h>
+#include <pelage/strand_set.h>
+#include <pelage/triangle_mesh.h>
+#include <pelage/vec.h>

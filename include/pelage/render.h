@@ -1,0 +1,33 @@
+// Scene in, picture out.
+#pragma once
+
+#include <pelage/image.h>
+#include <pelage/progress.h>
+#include <pelage/scene.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pelage {
+
+/// One row of `--stats`: a stage by the name it has everywhere (folder, profiler, benchmark).
+struct StageStat {
+  std::string stage;         ///< e.g. "raster"
+  double seconds = 0;        ///< wall time
+  std::uint64_t bytes = 0;   ///< memory that the stage's results hold
+  std::uint64_t items = 0;   ///< what it worked on …
+  std::string unit;          ///< … and what that is: "segments", "samples", …
+};
+
+struct RenderResult {
+  Image linear;                  ///< R, G, B, A; scene-linear, exposure applied, premultiplied where A < 1
+  Image display;                 ///< R, G, B, A; tone-mapped, sRGB-encoded, 0…1
+  std::vector<StageStat> stats;  ///< in the order of the stages
+};
+
+/// Renders `scene.settings.view` of `scene`. Throws Error on settings out of range. The result has the same bits for
+/// any number of threads (see set_thread_count() in <pelage/runtime.h>).
+RenderResult render(const Scene& scene, const Progress& progress = {});
+
+}  // namespace pelage

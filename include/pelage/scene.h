@@ -1,0 +1,122 @@
+// What is seen, from where, in which light: the one description that every renderer of Pelage reads.
+#pragma once
+
+#include <pelage/image.h>
+#include <pelage/strand_set.h>
+#include <pelage/triangle_mesh.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pelage {
+
+struct Camera {
+  enum class Projection { kPerspective, kOrthographic };
+  Projection projection = Projection::kPerspective;
+  Vec3 eye{0, 0, 1};
+  Vec3 target{0, 0, 0};
+  Vec3 up{0, 1, 0};
+  float fov_y = 0.5f;         ///< radians, full vertical angle of the perspective camera, (0, π)
+  float height = 0.5f;        ///< metres, full vertical extent of the orthographic camera, > 0
+  float near_plane = 0.001f;  ///< metres in front of the eye, > 0; nearer things are clipped
+};
+
+struct Light {
+  enum class Type { kPoint, kSpot, kDirectional };
+  Type type = Type::kDirectional;
+  std::string name;
+  Vec3 position{0, 0, 0};      ///< point and spot: metres
+  Vec3 direction{0, -1, 0};    ///< spot and directional: where the light travels; unit length
+  Vec3 intensity{1, 1, 1};     ///< point and spot: radiant intensity, W/sr; directional: irradiance, W/m²; RGB
+  float inner_angle = 0.3f;    ///< spot: radians from the axis up to which it is full
+  float outer_angle = 0.4f;    ///< spot: radians from the axis from which it is dark; > inner_angle
+  bool casts_shadow = true;
+};
+
+/// Light from far away: a constant, times a latitude-longitude map where one is given.
+struct Environment {
+  Vec3 radiance{0, 0, 0};            ///< W/(m²·sr), RGB; multiplies the map where there is one
+  std::shared_ptr<const Image> map;  ///< RGB, row 0 is straight up, the middle column looks along −Z; may be null
+  float rotation = 0;                ///< radians about +Y, counter-clockwise from above
+  bool visible = false;              ///< shown behind the scene; otherwise the background colour is
+};
+
+/// Single-fibre scattering and its colour.
+struct HairMaterial {
+  enum class Model { kKajiyaKay, kMarschner, kZhu };
+  enum class ColorSource { kMelanin, kRgb, kStrand };
+  Model model = Model::kMarschner;
+  ColorSource color_source = ColorSource::kMelanin;
+  float eumelanin = 1.3f;         ///< concentration, ≥ 0; 0.1 blond, 0.5 light brown, 1.3 brown, 8 black
+  float pheomelanin = 0.2f;       ///< concentration, ≥ 0; red hair 1 and more
+  Vec3 color{0.3f, 0.15f, 0.07f}; ///< linear colour of a dense tuft, 0…1, for kRgb (and where strands have none)
+  float eta = 1.55f;              ///< index of refraction, > 1
+  float beta_longitudinal = 7.5f * 3.14159265f / 180;  ///< radians, standard deviation of M_R; TT half, TRT twice of it
+  float beta_azimuthal = 15.f * 3.14159265f / 180;     ///< radians, standard deviation of N_TT
+  float cuticle_tilt = 3.f * 3.14159265f / 180;        ///< radians, α ≥ 0; R shifts by −2α in θ_i + θ_o terms toward the root
+  float specular_gain = 1;        ///< multiplies R; 1 is physical
+};
+
+struct GroomInstance {
+  std::string name;
+  std::shared_ptr<const StrandSet> strands;
+  HairMaterial material;
+  Affine transform;         ///< object to world; similarity (rotation, translation, one scale)
+  float width_scale = 1;    ///< multiplies every width
+};
+
+struct MeshInstance {
+  std::string name;
+  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const Image> texture;  ///< RGB, linear; may be null
+  Vec3 color{0.45f, 0.3f, 0.24f};        ///< linear diffuse reflectance, multiplies the texture
+  float specular = 0.04f;                ///< reflectance at normal incidence
+  float roughness = 0.5f;                ///< GGX α, (0, 1]
+  Affine transform;                      ///< object to world
+};
+
+/// What the picture shows.
+enum class View { kBeauty, kStrandId, kU, kTangent, kDepth, kCoverage, kOverdraw, kAlbedo };
+
+/// Where a pixel's opacity comes from.
+enum class AlphaSource {
+  kSamples,   ///< share of covered samples
+  kAnalytic,  ///< exact area of the bands inside the pixel
+};
+
+enum class ToneMap { kAces, kNone };
+
+struct RenderSettings {
+  int width = 1024, height = 1024;                 ///< pixels, 1…16384
+  int samples = 8;                                 ///< per pixel: 1, 2, 4, 8 or 16
+  AlphaSource alpha = AlphaSource::kSamples;
+  View view = View::kBeauty;
+  float exposure = 0;                              ///< stops
+  ToneMap tone_map = ToneMap::kAces;
+  Vec3 background{0.18f, 0.19f, 0.21f};            ///< linear, where nothing is hit and the environment is hidden
+  bool transparent_background = false;             ///< keep alpha instead of the background
+  int subdivisions = 0;                            ///< segments per span; 0 chooses from the projected curvature
+  bool shadows = true;
+  bool dual_scattering = true;                     ///< multiple scattering after Zinke 2008
+  int opacity_map_size = 1024;                     ///< texels a side, 64…4096
+};
+
+struct Scene {
+  Camera camera;
+  std::vector<Light> lights;
+  Environment environment;
+  std::vector<GroomInstance> grooms;
+  std::vector<MeshInstance> meshes;
+  RenderSettings settings;
+};
+
+/// Box of all grooms and meshes in world space.
+Bounds bounds(const Scene& scene);
+
+/// Camera, three-point light and environment for whatever stands in the scene: what `pelage render FILE` uses.
+/// Looks at the grooms (at the meshes where there are none) slightly from the front left, +Z being the front.
+void add_default_camera(Scene& scene);
+void add_default_lights(Scene& scene);
+
+}  // namespace pelage

@@ -1,0 +1,118 @@
+// Every arrow of the data-flow diagram is one plain struct here; stages talk to each other through these alone.
+//
+//   posed strands ─assemble▶ ScreenBlock ─raster▶ GBuffer ─shade▶ Radiance ─composite▶ Image
+//                      light ─▶ OpacityMap, ShadowMap ──────┘
+#pragma once
+
+#include <pelage/image.h>
+#include <pelage/scene.h>
+#include <pelage/vec.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/buffer.h"
+
+namespace pelage {
+
+/// A camera made ready for projection. Pixel (0, 0) is the top left one; pixel centres are at +0.5.
+///
+/// Camera space: x right, y down, z forward, metres, eye at the origin. Perspective: screen = center + focal·(x, y)/z;
+/// orthographic: screen = center + focal·(x, y), focal in pixels per metre.
+struct CameraView {
+  Affine world_to_camera;
+  Affine camera_to_world;
+  float focal = 1;        ///< pixels (perspective) or pixels per metre (orthographic)
+  float center_x = 0;     ///< pixels
+  float center_y = 0;     ///< pixels
+  float near_plane = 0;   ///< metres, > 0
+  int width = 0;          ///< pixels
+  int height = 0;         ///< pixels
+  bool perspective = true;
+};
+
+/// The curve segments of all grooms are numbered through: segment k of span s of strand i of groom g has the id
+///   groom_base[g] + (offsets[i] + s)·subdivisions + k,
+/// so an id (and t on the segment) names a place on a strand without any table. Bézier spans: s counts spans.
+struct SegmentNumbering {
+  std::vector<std::uint32_t> groom_base;    ///< [groom_count + 1]; the last is the number of ids
+  std::vector<std::uint32_t> subdivisions;  ///< [groom_count] segments per span, ≥ 1
+};
+
+/// A run of projected polyline points, on its way from assemble to raster: a few thousand, then reused.
+///
+/// Point j and point j+1 bound a segment where `id[j] != kNoSegment`. Bands are camera-facing: at point j the band
+/// reaches from (x, y) − r·(nx, ny) to (x, y) + r·(nx, ny), so adjacent segments share an edge exactly.
+struct ScreenBlock {
+  static constexpr std::uint32_t kNoSegment = 0xffffffffu;
+  std::size_t count = 0;         ///< points in use; arrays are padded by 64 valid floats for whole-lane loads
+  Buffer<float> x, y;            ///< pixels; may lie outside the image
+  Buffer<float> depth;           ///< camera-space z, metres; ≥ near_plane (clipped)
+  Buffer<float> radius;          ///< pixels, half the band's width
+  Buffer<float> nx, ny;          ///< unit normal of the projected tangent, shared by both neighbours (mitre direction)
+  Buffer<std::uint32_t> id;      ///< id of the segment that starts here, kNoSegment at a strand's last point
+};
+
+/// 64-bit pixel of the nearest-wins layers. A smaller key is nearer; equal depths are settled by the id, so the
+/// winner is the same in any order. Empty: all ones.
+///   bits 63…32  depth, IEEE bits of a positive float (order-preserving), metres
+///   bits 31…0   segment id
+using PixelKey = std::uint64_t;
+inline constexpr PixelKey kEmptyPixel = ~PixelKey{0};
+
+/// What raster makes of all strands. Layers that were not asked for are empty.
+struct GBuffer {
+  int width = 0, height = 0;             ///< pixels
+  int samples = 1;                       ///< sample positions per pixel in `sample_keys`: 1, 2, 4, 8, 16
+  Buffer<PixelKey> center;               ///< [h·w] the band covers the pixel's centre
+  Buffer<PixelKey> conservative;         ///< [h·w] the band touches the pixel anywhere
+  Buffer<PixelKey> sample_keys;          ///< [h·w·samples] the band covers the sample; samples of a pixel adjacent
+  Buffer<std::uint32_t> coverage;        ///< [h·w] analytic: see raster/analytic.h for the fixed-point unit
+  Buffer<std::int32_t> tangent_cos2;     ///< [h·w] Σ area·cos 2ψ, ψ the screen angle of the band; fixed point
+  Buffer<std::int32_t> tangent_sin2;     ///< [h·w] Σ area·sin 2ψ
+  Buffer<std::uint32_t> overdraw;        ///< [h·w] fragments tested; only for the debug view
+  Buffer<float> opaque_depth;            ///< [h·w·samples], or empty without meshes; camera z, metres, +inf for none
+};
+
+/// Opaque scene behind and between the strands, by primary rays.
+struct OpaqueLayer {
+  int width = 0, height = 0, samples = 1;
+  Buffer<float> depth;                   ///< [h·w·samples] camera z, metres; +inf where nothing is hit
+  Buffer<Vec3> color;                    ///< [h·w·samples] shaded linear radiance; 0 where nothing is hit
+};
+
+/// Deep opacity map of one light: how many strands lie between the light and a place (Yuksel & Keyser 2008).
+struct OpacityMap {
+  static constexpr int kLayers = 8;
+  CameraView view;                       ///< the light as a camera; size = resolution
+  Buffer<float> first_depth;             ///< [size²] depth of the first strand; +inf for none
+  std::array<float, kLayers> layer_end{};///< metres behind first_depth at which layer i ends; increasing
+  Buffer<float> crossings;               ///< [size²·kLayers] mean number of strands crossed up to layer_end[i]
+  Buffer<float> sin_theta;               ///< [size²·kLayers] mean |sin θ_i| of those strands; may be empty
+};
+
+/// Depth of the opaque meshes as a light sees them.
+struct ShadowMap {
+  CameraView view;
+  Buffer<float> depth;                   ///< [size²] metres; +inf for none
+};
+
+/// A light ready for shading.
+struct PreparedLight {
+  Light light;
+  OpacityMap opacity;                    ///< empty when the light casts no shadow
+  ShadowMap shadow;                      ///< empty when there is no mesh
+};
+
+/// Shaded colour of every distinct visible strand sample of a G-buffer: what composite spreads over pixels.
+/// Sample i of pixel p has the colour `color[index[p·samples + i]]`, kNone where no strand is visible.
+struct Radiance {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  Buffer<std::uint32_t> index;           ///< [h·w·samples]
+  Buffer<Vec3> color;                    ///< scene-linear radiance, W/(m²·sr)
+};
+
+}  // namespace pelage
