@@ -1,0 +1,18 @@
+// The verbs of the pelage command. Each adds its subcommand, with its options, its help and the work as callback;
+// each stands in the file of its name. The order in add_verbs() (main.cpp) is the order of the help.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace pelage::cli {
+
+void add_render(CLI::App& app);
+void add_grow(CLI::App& app);
+void add_info(CLI::App& app);
+void add_convert(CLI::App& app);
+void add_bench(CLI::App& app);
+
+/// Adds --threads and --isa, which act as they are parsed.
+void add_machine_options(CLI::App& verb);
+
+}  // namespace pelage::cli
