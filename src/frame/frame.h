@@ -70,7 +70,8 @@ struct GBuffer {
   Buffer<PixelKey> center;               ///< [h·w] the band covers the pixel's centre
   Buffer<PixelKey> conservative;         ///< [h·w] the band touches the pixel anywhere
   Buffer<PixelKey> sample_keys;          ///< [h·w·samples] the band covers the sample; samples of a pixel adjacent
-  Buffer<std::uint32_t> coverage;        ///< [h·w] analytic: see raster/analytic.h for the fixed-point unit
+  static constexpr float kCoverageUnit = 1.f / 65536;  ///< pixels of area per unit of `coverage`
+  Buffer<std::uint32_t> coverage;        ///< [h·w] analytic: area of the pixel that strands cover, fixed point
   Buffer<std::int32_t> tangent_cos2;     ///< [h·w] Σ area·cos 2ψ, ψ the screen angle of the band; fixed point
   Buffer<std::int32_t> tangent_sin2;     ///< [h·w] Σ area·sin 2ψ
   Buffer<std::uint32_t> overdraw;        ///< [h·w] fragments tested; only for the debug view
@@ -112,7 +113,16 @@ struct PreparedLight {
 struct Radiance {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   Buffer<std::uint32_t> index;           ///< [h·w·samples]
+  Buffer<std::uint32_t> edge;            ///< [h·w] color of a strand that touches a pixel none of whose samples it covers;
+                                         ///< for AlphaSource::kAnalytic, else empty
   Buffer<Vec3> color;                    ///< scene-linear radiance, W/(m²·sr)
+};
+
+/// What is seen where there is neither strand nor mesh.
+struct Backdrop {
+  Vec3 color;                            ///< scene-linear radiance
+  float alpha = 1;                       ///< 0: the picture stays transparent there
+  Buffer<Vec3> pixels;                   ///< [h·w], instead of `color`; or empty
 };
 
 }  // namespace pelage
