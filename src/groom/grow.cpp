@@ -1,0 +1,58 @@
+#include <pelage/error.h>
+#include <pelage/grow.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "groom/mannequin.h"
+#include "groom/scalp.h"
+#include "groom/strands.h"
+
+namespace pelage {
+namespace {
+
+void check_range(const char* name, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    throw Error("grow", name, fmt::format("{} is outside {} … {}", value, low, high), "choose a value in that range");
+}
+
+void check(const GrowSettings& s) {
+  check_range("strands", s.strands, 1, 1000000);
+  check_range("points", s.points, 4, 1024);
+  check_range("strands × points", static_cast<double>(s.strands) * s.points, 4, 4294967295.0);
+  check_range("length", static_cast<double>(s.length), 1e-4, 10);
+  check_range("length_variation", static_cast<double>(s.length_variation), 0, 1);
+  check_range("width", static_cast<double>(s.width), 0, 0.1);
+  check_range("width_variation", static_cast<double>(s.width_variation), 0, 1);
+  check_range("taper", static_cast<double>(s.taper), 0, 1);
+  check_range("curl_radius", static_cast<double>(s.curl_radius), 0, 1);
+  check_range("curl_pitch", static_cast<double>(s.curl_pitch), 1e-4, 10);
+  check_range("clumps", s.clumps, 0, 1000000);
+  check_range("clump_tightness", static_cast<double>(s.clump_tightness), 0, 1);
+  check_range("frizz", static_cast<double>(s.frizz), 0, 1);
+  check_range("flyaways", static_cast<double>(s.flyaways), 0, 1);
+  check_range("gravity", static_cast<double>(s.gravity), 0, 1);
+}
+
+}  // namespace
+
+StrandSet grow(const GrowSettings& settings, const TriangleMesh& surface, const Progress& progress) {
+  using namespace groom;
+  check(settings);
+  Ground ground;
+  ground.mesh = &surface;
+  ground.scalp = is_mannequin(surface);
+  if (ground.scalp) ground.collider = &mannequin().grid;
+
+  constexpr int kUnclumpedGuides = 500;
+  const int wanted = settings.clumps > 0 ? settings.clumps : kUnclumpedGuides;
+  const std::size_t guide_count = static_cast<std::size_t>(std::min(wanted, settings.strands));
+  const float longest = settings.length * (1 + 2.5f * settings.length_variation);
+  const GuideSet guides = grow_guides(settings, ground, guide_count, longest);
+  const std::vector<Root> roots = scatter_roots(surface, static_cast<std::size_t>(settings.strands), settings.seed,
+                                                ground.scalp ? DensityField(scalp_density) : DensityField());
+  return fill_strands(settings, ground, guides, roots, progress);
+}
+
+}  // namespace pelage

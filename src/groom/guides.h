@@ -1,0 +1,34 @@
+// Guide curves: the shape of a haircut before single strands are told apart.
+#pragma once
+
+#include <pelage/grow.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "groom/distance_grid.h"
+#include "groom/roots.h"
+
+namespace pelage::groom {
+
+/// The surface that hair grows on, and what it must stay outside of.
+struct Ground {
+  const TriangleMesh* mesh = nullptr;
+  const DistanceGrid* collider = nullptr;  ///< null: hair only keeps above its root's tangent plane
+  bool scalp = false;                      ///< the mesh is the mannequin
+};
+
+/// Guides of equal arc length, each with a rotation-minimising frame.
+struct GuideSet {
+  int points = 0;                       ///< per guide
+  float step = 0;                       ///< metres between neighbouring points of a guide
+  std::vector<Root> roots;              ///< [guide_count]
+  std::vector<Vec3> position;           ///< [guide_count·points]
+  std::vector<Vec3> side, up;           ///< [guide_count·points] unit, across the curve; side × up is the tangent
+  std::vector<std::int32_t> group;      ///< [guide_count]
+  std::size_t count() const { return roots.size(); }
+};
+
+GuideSet grow_guides(const GrowSettings& settings, const Ground& ground, std::size_t count, float guide_length);
+
+}  // namespace pelage::groom

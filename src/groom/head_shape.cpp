@@ -1,0 +1,97 @@
+#include "groom/head_shape.h"
+
+#include "groom/sdf.h"
+
+namespace pelage::groom {
+namespace {
+
+// The shapes below are placed by eye on a head of average adult proportions (height 0.24, breadth 0.155, depth 0.195).
+// `q` is the point mirrored to x ≥ 0: the mannequin is symmetric.
+
+float skull(Vec3 q) {
+  float d = sd_ellipsoid(q - Vec3(0, 0.030f, -0.012f), {0.0765f, 0.088f, 0.099f});
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.028f, 0.024f), {0.060f, 0.080f, 0.063f}), 0.03f);
+  d = smooth_union(d, sd_capsule(q, {0.048f, -0.045f, 0.004f}, {0.012f, -0.098f, 0.062f}, 0.017f, 0.014f), 0.03f);
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.098f, 0.070f), {0.021f, 0.016f, 0.017f}), 0.02f);
+  return smooth_union(d, sd_ellipsoid(q - Vec3(0.042f, -0.022f, 0.060f), {0.022f, 0.016f, 0.020f}), 0.025f);
+}
+
+float eyes(float d, Vec3 q) {
+  d = smooth_union(d, sd_capsule(q, {0.008f, 0.019f, 0.0835f}, {0.048f, 0.018f, 0.064f}, 0.009f, 0.008f), 0.016f);
+  d = smooth_difference(d, sd_ellipsoid(q - Vec3(0.032f, 0.002f, 0.093f), {0.021f, 0.011f, 0.015f}), 0.014f);
+  const float lid = sd_ellipsoid(q - Vec3(0.0315f, 0.000f, 0.0690f), {0.0155f, 0.0125f, 0.0145f});
+  d = smooth_union(d, lid, 0.004f);
+  return smooth_difference(d, sd_capsule(q, {0.019f, -0.0045f, 0.0835f}, {0.045f, -0.0045f, 0.0785f}, 0.0012f, 0.0012f),
+                           0.003f);
+}
+
+float nose(float d, Vec3 q) {
+  float n = sd_capsule(q, {0, 0.012f, 0.0865f}, {0, -0.032f, 0.1085f}, 0.0065f, 0.0085f);
+  n = smooth_union(n, sd_ellipsoid(q - Vec3(0, -0.035f, 0.1085f), {0.0095f, 0.0085f, 0.0095f}), 0.008f);
+  n = smooth_union(n, sd_ellipsoid(q - Vec3(0.0115f, -0.039f, 0.0975f), {0.0070f, 0.0070f, 0.0095f}), 0.007f);
+  d = smooth_union(d, n, 0.010f);
+  return smooth_difference(d, sd_ellipsoid(q - Vec3(0.0065f, -0.0455f, 0.1030f), {0.0028f, 0.0032f, 0.0045f}), 0.004f);
+}
+
+float mouth(float d, Vec3 q) {
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.068f, 0.068f), {0.032f, 0.026f, 0.022f}), 0.02f);
+  const float upper = sd_capsule(q, {0.005f, -0.0640f, 0.0905f}, {0.021f, -0.0685f, 0.0800f}, 0.0050f, 0.0022f);
+  const float lower = sd_capsule(q, {0.003f, -0.0755f, 0.0890f}, {0.019f, -0.0705f, 0.0805f}, 0.0058f, 0.0022f);
+  d = smooth_union(d, upper, 0.005f);
+  d = smooth_union(d, lower, 0.005f);
+  d = smooth_difference(d, sd_capsule(q, {0, -0.0695f, 0.0970f}, {0.025f, -0.0697f, 0.0825f}, 0.0013f, 0.0010f), 0.0035f);
+  d = smooth_difference(d, sd_capsule(q, {0, -0.052f, 0.0960f}, {0, -0.059f, 0.0975f}, 0.0022f, 0.0022f), 0.006f);
+  return smooth_difference(d, sd_ellipsoid(q - Vec3(0, -0.0855f, 0.0925f), {0.016f, 0.0042f, 0.006f}), 0.010f);
+}
+
+float ear(float d, Vec3 q) {
+  // In the ear's frame: x away from the head, y up and slightly back, z forward.
+  const Vec3 o = q - Vec3(0.0790f, -0.012f, -0.012f);
+  const float c = 0.966f, s = 0.259f, cy = 0.906f, sy = 0.423f;
+  const Vec3 tilted(o.x, c * o.y - s * o.z, s * o.y + c * o.z);
+  const Vec3 p(cy * tilted.x + sy * tilted.z, tilted.y, -sy * tilted.x + cy * tilted.z);
+  float e = sd_ellipsoid(p, {0.0085f, 0.031f, 0.0180f});
+  e = smooth_union(e, sd_ellipsoid(p - Vec3(0, -0.024f, 0.004f), {0.006f, 0.010f, 0.009f}), 0.008f);
+  e = smooth_difference(e, sd_ellipsoid(p - Vec3(0.0085f, 0.003f, 0.002f), {0.0070f, 0.0200f, 0.0100f}), 0.005f);
+  return smooth_union(d, e, 0.008f);
+}
+
+float bust(Vec3 q) {
+  float d = sd_capsule(q, {0, -0.060f, -0.022f}, {0, -0.185f, -0.030f}, 0.052f, 0.056f);
+  d = smooth_union(d, sd_capsule(q, {0.038f, -0.060f, -0.012f}, {0.012f, -0.175f, 0.020f}, 0.013f, 0.012f), 0.02f);
+  d = smooth_union(d, sd_capsule(q, {0.01f, -0.178f, -0.042f}, {0.145f, -0.222f, -0.035f}, 0.032f, 0.042f), 0.05f);
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.270f, -0.025f), {0.165f, 0.085f, 0.085f}), 0.05f);
+  d = smooth_union(d, sd_capsule(q, {0.018f, -0.200f, 0.036f}, {0.13f, -0.196f, 0.000f}, 0.007f, 0.006f), 0.018f);
+  return smooth_intersection(d, sd_ellipsoid(q - Vec3(0, -0.140f, -0.03f), {0.200f, 0.135f, 0.115f}), 0.012f);
+}
+
+}  // namespace
+
+float head_distance(Vec3 p) {
+  const Vec3 q(std::abs(p.x), p.y, p.z);
+  float d = skull(q);
+  d = eyes(d, q);
+  d = nose(d, q);
+  d = mouth(d, q);
+  d = smooth_union(d, bust(q), 0.022f);
+  return ear(d, q);
+}
+
+Vec3 head_normal(Vec3 p) {
+  // Tetrahedral differences: four evaluations instead of six, same order.
+  constexpr float h = 4e-4f;
+  constexpr Vec3 k[4] = {{1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {1, 1, 1}};
+  Vec3 sum;
+  for (const Vec3 direction : k) sum = sum + direction * head_distance(p + direction * h);
+  return normalize(sum);
+}
+
+Vec2 head_uv(Vec3 p) {
+  const Vec3 d = normalize(p - Vec3(0, 0.01f, -0.012f));
+  const float polar = std::acos(std::clamp(d.y, -1.f, 1.f)) * (1 / 3.14159265f);
+  const float ring = std::sqrt(d.x * d.x + d.z * d.z);
+  if (ring <= 0) return {0.5f, 0.5f};
+  return {0.5f + 0.5f * polar * d.x / ring, 0.5f - 0.5f * polar * d.z / ring};
+}
+
+}  // namespace pelage::groom
