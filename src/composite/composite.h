@@ -1,0 +1,27 @@
+// Composite: samples over the opaque scene over what is behind it → the linear picture → the picture for a display.
+#pragma once
+
+#include <pelage/image.h>
+#include <pelage/scene.h>
+
+#include "frame/frame.h"
+
+namespace pelage {
+
+/// What is seen where nothing is: the environment where it is visible, else the background color, else nothing.
+Backdrop make_backdrop(const Scene& scene, const CameraView& view);
+
+/// Writes the picture of one band: row y of the band becomes row `first_row` + y of `linear` (R, G, B, A;
+/// premultiplied; exposure applied). AlphaSource::kSamples averages the samples; kAnalytic lays the mean color of the
+/// visible strand samples over the opaque scene by the exact area of GBuffer::coverage.
+///
+/// All layers of a band have the same size and number of samples; `linear` has four channels and their width.
+/// O(samples), rows in parallel.
+void resolve(const GBuffer& gbuffer, const Radiance& radiance, const OpaqueLayer& opaque, const Backdrop& backdrop,
+             const RenderSettings& settings, int first_row, Image& linear);
+
+/// `linear` (R, G, B, A; premultiplied) tone-mapped and sRGB-encoded, 0…1. Color is un-premultiplied for the curve and
+/// stays straight, as PNG wants it; alpha is copied. O(pixels).
+Image make_display(const Image& linear, ToneMap tone_map);
+
+}  // namespace pelage
