@@ -28,6 +28,7 @@ inline Float max(Float a, Float b) { return a > b ? a : b; }
 inline Float abs(Float a) { return std::fabs(a); }
 inline Float sqrt(Float a) { return std::sqrt(a); }
 inline Float floor(Float a) { return std::floor(a); }
+inline Float ceil(Float a) { return std::ceil(a); }
 /// 2^n for whole n in [−126, 127].
 inline Float pow2i(Float n) { return std::bit_cast<float>((static_cast<std::int32_t>(n) + 127) << 23); }
 /// e with 2^e ≤ x < 2^(e+1), as a Float; x a positive normal number.

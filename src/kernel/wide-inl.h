@@ -70,6 +70,7 @@ HWY_INLINE Float max(Float a, Float b) { return select(a > b, a, b); }
 HWY_INLINE Float abs(Float a) { return hn::Abs(a.v); }
 HWY_INLINE Float sqrt(Float a) { return hn::Sqrt(a.v); }
 HWY_INLINE Float floor(Float a) { return hn::Floor(a.v); }
+HWY_INLINE Float ceil(Float a) { return hn::Ceil(a.v); }
 HWY_INLINE Float pow2i(Float n) {
   const IntTag di;
   const auto i = hn::Add(hn::ConvertTo(di, n.v), hn::Set(di, 127));

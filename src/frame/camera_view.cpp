@@ -1,0 +1,76 @@
+#include "frame/camera_view.h"
+
+#include <pelage/error.h>
+
+#include <fmt/format.h>
+
+#include "core/check.h"
+
+namespace pelage {
+namespace {
+
+[[noreturn]] void fail(const char* what, float value, const char* remedy) {
+  throw Error("camera", what, fmt::format("{} is out of range", value), remedy);
+}
+
+void check_camera(const Camera& camera) {
+  if (!(camera.near_plane > 0) || !std::isfinite(camera.near_plane))
+    fail("near_plane", camera.near_plane, "give a distance above 0 metres");
+  if (camera.projection == Camera::Projection::kPerspective) {
+    if (!(camera.fov_y > 1e-4f && camera.fov_y < 3.14f)) fail("fov_y", camera.fov_y, "give an angle between 0 and pi radians");
+  } else if (!(camera.height > 0) || !std::isfinite(camera.height)) {
+    fail("height", camera.height, "give a height above 0 metres");
+  }
+  if (!is_finite(camera.eye) || !is_finite(camera.target) || camera.eye == camera.target)
+    throw Error("camera", "target", "eye and target coincide or are not finite", "give two different points");
+}
+
+}  // namespace
+
+Affine compose(const Affine& a, const Affine& b) {
+  Affine r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j)
+      r.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + (j == 3 ? a.m[i][3] : 0.f);
+  return r;
+}
+
+float similarity_scale(const Affine& a) { return length(Vec3(a.m[0][0], a.m[1][0], a.m[2][0])); }
+
+CameraView make_camera_view(const Camera& camera, int width, int height) {
+  PELAGE_CHECK(width > 0 && height > 0);
+  check_camera(camera);
+  const Vec3 forward = normalize(camera.target - camera.eye);
+  Vec3 side = cross(forward, normalize(camera.up));
+  if (!(dot(side, side) > 1e-10f))
+    side = cross(forward, std::fabs(forward.y) < 0.9f ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
+  const Vec3 right = normalize(side), down = cross(forward, right);
+
+  CameraView view;
+  const Vec3 axes[3] = {right, down, forward};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 a = axes[i];
+    const float row[4] = {a.x, a.y, a.z, -dot(a, camera.eye)};
+    for (int j = 0; j < 4; ++j) view.world_to_camera.m[i][j] = row[j];
+  }
+  for (int j = 0; j < 3; ++j) {
+    view.camera_to_world.m[0][j] = axes[j].x;
+    view.camera_to_world.m[1][j] = axes[j].y;
+    view.camera_to_world.m[2][j] = axes[j].z;
+  }
+  view.camera_to_world.m[0][3] = camera.eye.x;
+  view.camera_to_world.m[1][3] = camera.eye.y;
+  view.camera_to_world.m[2][3] = camera.eye.z;
+
+  view.perspective = camera.projection == Camera::Projection::kPerspective;
+  view.focal = view.perspective ? 0.5f * static_cast<float>(height) / std::tan(0.5f * camera.fov_y)
+                                : static_cast<float>(height) / camera.height;
+  view.center_x = 0.5f * static_cast<float>(width);
+  view.center_y = 0.5f * static_cast<float>(height);
+  view.near_plane = camera.near_plane;
+  view.width = width;
+  view.height = height;
+  return view;
+}
+
+}  // namespace pelage

@@ -1,0 +1,30 @@
+// From the camera of a scene to the numbers that projection needs; shared by raster (the eye) and light (shadow views).
+#pragma once
+
+#include <pelage/scene.h>
+
+#include "frame/frame.h"
+
+namespace pelage {
+
+/// The view of `camera` on an image of width × height pixels (square pixels; `fov_y` and `height` span the height).
+/// Throws Error("camera", …) where an angle, a height or the near plane is out of range, or eye and target coincide.
+/// An `up` along the view direction is replaced by another axis.
+CameraView make_camera_view(const Camera& camera, int width, int height);
+
+/// a ∘ b: first b, then a.
+Affine compose(const Affine& a, const Affine& b);
+
+/// The one scale factor of a similarity: length of its first column.
+float similarity_scale(const Affine& a);
+
+/// Pixels per metre, facing the camera, at camera depth z > 0.
+inline float pixels_per_metre(const CameraView& view, float z) { return view.perspective ? view.focal / z : view.focal; }
+
+/// Where a point in camera space is seen, pixels.
+inline Vec2 project(const CameraView& view, Vec3 c) {
+  const float scale = pixels_per_metre(view, c.z);
+  return {view.center_x + scale * c.x, view.center_y + scale * c.y};
+}
+
+}  // namespace pelage

@@ -1,0 +1,82 @@
+// The band of a strand on the screen: which points it covers, and how deep it is there. Every layer of raster (center,
+// samples, conservative, analytic, overdraw), fast or plain, means this one definition; derivation and bounds stand
+// in docs/derivations/raster.md.
+//
+// A segment runs from point a to point b (pixels). Its major axis is the one along which it is longer, ties go to x.
+// With u along the major and v along the minor axis, s = u - a.u, and the slope m = dv/du of the segment, |m| <= 1:
+//
+//   center line   v(s) = a.v + m s
+//   half height   h(s) = sqrt(1 + m^2) (a.r + (b.r - a.r) s / du)      perpendicular distance r = height / sqrt(1 + m^2)
+//
+// The band is the set of points with
+//   (1) |v - v(s)| <= h(s)                                             between two straight lateral edges
+//   (2) cap_a . (p - a) >= 0  and  cap_b . (p - b) < 0                 between its two caps
+//   (3) min(a.u - e_a, b.u - e_b) <= u <= max(a.u + e_a, b.u + e_b)    e = kRasterMiterLimit r
+// The cap of a point is the line through it across cap_x, cap_y, the direction halfway between the strand's two
+// segments there (its normal is the miter). Both neighbors evaluate the very same expression, one with >=, the other
+// with <: along a strand nothing is covered twice or left open. Both lateral edges stand at distance r from their
+// center lines, so they meet on the miter. (3) bevels the miter of a sharp bend (up to 90 degrees it is whole).
+//
+// Depth is linear along u, within the depths of the two ends. A segment seen end-on (a = b) covers nothing.
+
+const float kRasterMiterLimit = 1.5f;
+
+struct RasterBand {
+  Mask x_major;       // u is x, v is y; otherwise u is y, v is x
+  Float u, v;         // start a
+  Float slope;        // m
+  Float half, half_slope;
+  Float depth, depth_slope, depth_min, depth_max;
+  Float first, last;  // rule (3)
+  Vec2 cap_a, cap_b;  // in (u, v)
+  Float end_u, end_v; // end b
+};
+
+PELAGE_FN RasterBand raster_band(Vec2 a, Vec2 b, Float radius_a, Float radius_b, Float depth_a, Float depth_b,
+                                 Vec2 cap_a, Vec2 cap_b) {
+  RasterBand r;
+  Float dx = b.x - a.x;
+  Float dy = b.y - a.y;
+  r.x_major = abs(dx) >= abs(dy);
+  Float du = select(r.x_major, dx, dy);
+  Float dv = select(r.x_major, dy, dx);
+  Float inverse = select(abs(du) > Float(0.0f), Float(1.0f) / du, Float(0.0f));
+  r.u = select(r.x_major, a.x, a.y);
+  r.v = select(r.x_major, a.y, a.x);
+  r.end_u = select(r.x_major, b.x, b.y);
+  r.end_v = select(r.x_major, b.y, b.x);
+  r.cap_a = Vec2(select(r.x_major, cap_a.x, cap_a.y), select(r.x_major, cap_a.y, cap_a.x));
+  r.cap_b = Vec2(select(r.x_major, cap_b.x, cap_b.y), select(r.x_major, cap_b.y, cap_b.x));
+  r.slope = dv * inverse;
+  Float stretch = sqrt(Float(1.0f) + r.slope * r.slope);
+  r.half = radius_a * stretch;
+  r.half_slope = (radius_b - radius_a) * stretch * inverse;
+  r.depth = depth_a;
+  r.depth_slope = (depth_b - depth_a) * inverse;
+  r.depth_min = min(depth_a, depth_b);
+  r.depth_max = max(depth_a, depth_b);
+  Float reach_a = radius_a * Float(kRasterMiterLimit);
+  Float reach_b = radius_b * Float(kRasterMiterLimit);
+  r.first = min(r.u - reach_a, r.end_u - reach_b);
+  r.last = max(r.u + reach_a, r.end_u + reach_b);
+  return r;
+}
+
+PELAGE_FN Float raster_band_center(RasterBand r, Float s) { return r.v + s * r.slope; }
+PELAGE_FN Float raster_band_half(RasterBand r, Float s) { return r.half + s * r.half_slope; }
+PELAGE_FN Float raster_band_depth(RasterBand r, Float s) {
+  return min(max(r.depth + s * r.depth_slope, r.depth_min), r.depth_max);
+}
+// Rule (2) at (u, v).
+PELAGE_FN Mask raster_between_caps(RasterBand r, Float u, Float v) {
+  Float side_a = r.cap_a.x * (u - r.u) + r.cap_a.y * (v - r.v);
+  Float side_b = r.cap_b.x * (u - r.end_u) + r.cap_b.y * (v - r.end_v);
+  return (side_a >= Float(0.0f)) && (side_b < Float(0.0f));
+}
+
+// Candidates of rule (1) for points at offset `at` (0.5 for pixel centers) in column s: rows j from this one on, as long
+// as raster_row_covered. Fast and plain rasterizers share these two expressions, hence the very same pixels.
+PELAGE_FN Float raster_first_row(Float center, Float half, Float at) { return ceil((center - half) - at); }
+PELAGE_FN Mask raster_row_covered(Float row, Float at, Float center, Float half) {
+  return (row + at) - center <= half;
+}
