@@ -54,7 +54,9 @@ bool needs_clipping(const AssembleJob& job, const ScreenBlock& block) {
   bool out = false;
   for (std::size_t i = 0; i < block.count; ++i) {
     const float limit = reach * (v.perspective ? block.depth[i] : 1.f);
-    out |= block.depth[i] < v.near_plane | v.focal * std::max(std::fabs(block.x[i]), std::fabs(block.y[i])) > limit;
+    const bool near = block.depth[i] < v.near_plane;
+    const bool far = v.focal * std::max(std::fabs(block.x[i]), std::fabs(block.y[i])) > limit;
+    out = out || near || far;
   }
   return out;
 }
