@@ -88,26 +88,36 @@ struct OpaqueLayer {
 };
 
 /// Deep opacity map of one light: how many strands lie between the light and a place (Yuksel & Keyser 2008).
+/// Crossings are expectations: the mean over a texel's rays of the number of strands that a ray meets.
 struct OpacityMap {
   static constexpr int kLayers = 8;
-  CameraView view;                       ///< the light as a camera; size = resolution
-  Buffer<float> first_depth;             ///< [size²] depth of the first strand; +inf for none
+  static constexpr float kCrossingUnit = 1.f / 65536;  ///< strands per unit of `crossings`
+  static constexpr int kOriginBlock = 4;               ///< texels a side that share one first depth
+  CameraView view;                       ///< the light as a camera; its width × height are the map's
+  Buffer<float> first_depth;             ///< [⌈h/4⌉·⌈w/4⌉] depth of a block's first strand, metres; +inf for none
   std::array<float, kLayers> layer_end{};///< metres behind first_depth at which layer i ends; increasing
-  Buffer<float> crossings;               ///< [size²·kLayers] mean number of strands crossed up to layer_end[i]
-  Buffer<float> sin_theta;               ///< [size²·kLayers] mean |sin θ_i| of those strands; may be empty
+  Buffer<std::uint32_t> crossings;       ///< [h·w·kLayers] strands crossed up to layer_end[i], fixed point; linear between
 };
 
 /// Depth of the opaque meshes as a light sees them.
 struct ShadowMap {
   CameraView view;
-  Buffer<float> depth;                   ///< [size²] metres; +inf for none
+  Buffer<float> depth;                   ///< [h·w] camera z, metres; +inf for none
 };
 
 /// A light ready for shading.
 struct PreparedLight {
   Light light;
+  float spread = 0;                      ///< radians, standard deviation of its directions; > 0: a piece of the environment
+  bool only_in_view = false;             ///< one face of a light inside the hair: lights what `opacity.view` sees
   OpacityMap opacity;                    ///< empty when the light casts no shadow
   ShadowMap shadow;                      ///< empty when there is no mesh
+};
+
+/// All light of a scene.
+struct LightRig {
+  std::vector<PreparedLight> lights;     ///< lights of the scene, then pieces of the environment
+  std::array<Vec3, 9> irradiance{};      ///< environment on a diffuse surface by its normal, W/m²: real spherical harmonics
 };
 
 /// Shaded colour of every distinct visible strand sample of a G-buffer: what composite spreads over pixels.

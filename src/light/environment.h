@@ -1,0 +1,29 @@
+// The environment in two forms: a few directional pieces with a spread (for strands, each with its own maps) and nine
+// spherical harmonics of irradiance (for opaque surfaces).
+#pragma once
+
+#include <pelage/scene.h>
+
+#include <array>
+#include <vector>
+
+namespace pelage {
+
+/// Radiance from direction `d` (unit length, world space, pointing away from the scene), W/(m²·sr).
+Vec3 environment_radiance(const Environment& environment, Vec3 d);
+
+/// A region of the sky, as a light.
+struct EnvironmentPiece {
+  Vec3 from;        ///< unit direction to the region's center of power
+  Vec3 irradiance;  ///< ∫ radiance over its solid angle, W/m² on a surface that faces it
+  float spread;     ///< radians, standard deviation of its directions about `from`, per axis
+};
+
+/// Cuts the environment into 2^levels regions of about equal power: median cut (Debevec 2005; references.bib:
+/// Debevec2005MedianCut). Bright small sources get small pieces, an even sky even ones. Black pieces are left out.
+std::vector<EnvironmentPiece> cut_environment(const Environment& environment, int levels);
+
+/// Coefficients of irradiance over the surface normal: E(n) = Σ c_i·Y_i(n), see kernel/light/irradiance.h.
+std::array<Vec3, 9> irradiance_harmonics(const Environment& environment);
+
+}  // namespace pelage

@@ -1,0 +1,28 @@
+// Deep opacity maps: how many strands lie between a light and a place (Yuksel & Keyser 2008, "Deep Opacity Maps";
+// references.bib: Yuksel2008Opacity).
+//
+// A hair of 70 µm is a fraction of a texel wide, so a depth map of it would be all or nothing. Instead each piece of a
+// strand adds what it covers of a texel: (length inside the texel · width) / texel area, the expected number of its
+// crossings by a ray through a random place of the texel. Sums of such expectations are right for any texel size.
+#pragma once
+
+#include <pelage/scene.h>
+
+#include "frame/frame.h"
+
+namespace pelage {
+
+struct OpacitySettings {
+  /// Every n-th strand is drawn and counts n-fold: for the small maps of the environment.
+  std::size_t strand_stride = 1;
+};
+
+/// Counts the strands of `grooms` as `view` sees them. Segments that reach behind the near plane are left out.
+///
+/// The origin of the layers is coarser than the map (OpacityMap::kOriginBlock): that costs little detail and saves time.
+/// Layer ends double from layer to layer and the last one reaches the farthest strand of all.
+/// The result is exact in integers: the same for any thread count. Complexity: O(control points + texels touched).
+OpacityMap build_opacity_map(const std::vector<GroomInstance>& grooms, const CameraView& view,
+                             const OpacitySettings& settings = {});
+
+}  // namespace pelage

@@ -1,0 +1,142 @@
+#include "raster/opaque.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "frame/light_lookup.h"
+#include "kernel/scalar.h"
+
+namespace pelage {
+namespace {
+
+constexpr float kPi = 3.14159265f;
+constexpr std::size_t kMaxSamples = 16;
+/// Samples share a shade where normals differ by less than about 11° …
+constexpr float kSharedNormal = 0.98f;
+/// … and depths by less than this share.
+constexpr float kSharedDepth = 0.02f;
+/// Shadow rays start this share of the camera distance off the surface.
+constexpr float kRayOffset = 2e-4f;
+/// Metres that a mesh must be in front of a surface in an environment piece's coarse shadow map, in texels.
+constexpr ShadowBias kEnvironmentBias{0, 2.5f};
+
+/// Ray through a place of the image; its parameter is the camera depth.
+Ray camera_ray(const CameraView& view, float x, float y) {
+  const float px = (x - view.center_x) / view.focal, py = (y - view.center_y) / view.focal;
+  const Vec3 eye = view.perspective ? Vec3(0, 0, 0) : Vec3(px, py, 0);
+  const Vec3 along = view.perspective ? Vec3(px, py, 1) : Vec3(0, 0, 1);
+  return {transform_point(view.camera_to_world, eye), transform_vector(view.camera_to_world, along), view.near_plane};
+}
+
+/// A hit with what shading needs; normals face the eye.
+struct Shading {
+  Surface surface;
+  Vec3 to_eye;
+  float depth;
+  const MeshInstance* material;
+};
+
+Shading shading_at(const Scene& scene, const MeshTracer& meshes, const Ray& ray, const RayHit& hit) {
+  Shading s{meshes.surface(hit), normalize(-ray.direction), hit.distance, &scene.meshes[hit.mesh]};
+  if (dot(s.surface.geometric_normal, s.to_eye) < 0)
+    s.surface.normal = -s.surface.normal, s.surface.geometric_normal = -s.surface.geometric_normal;
+  return s;
+}
+
+bool same_shade(const Shading& a, const Shading& b) {
+  return a.material == b.material && dot(a.surface.normal, b.surface.normal) > kSharedNormal &&
+         std::fabs(a.depth - b.depth) < kSharedDepth * a.depth;
+}
+
+bool in_shadow(const MeshTracer& meshes, const Shading& s, const Illumination& light) {
+  const float side = dot(s.surface.geometric_normal, light.to_light) < 0 ? -1.f : 1.f;
+  const float offset = kRayOffset * s.depth;
+  const Ray ray{s.surface.position + s.surface.geometric_normal * (side * offset), light.to_light, offset,
+                light.distance - offset};
+  bool hit = false;
+  meshes.occluded({&ray, 1}, {&hit, 1});
+  return hit;
+}
+
+Vec3 direct_light(const Scene& scene, const MeshTracer& meshes, const Shading& s, const PreparedLight& prepared) {
+  const Illumination light = illuminate(prepared, s.surface.position);
+  const float cosine = dot(s.surface.normal, light.to_light);
+  if (cosine <= 0 || light.irradiance == Vec3(0, 0, 0)) return {0, 0, 0};
+  const bool shadowed = scene.settings.shadows && prepared.light.casts_shadow;
+  if (shadowed && in_shadow(meshes, s, light)) return {0, 0, 0};
+  const float open = kernel::light_transmittance(crossings_at(prepared.opacity, s.surface.position));
+  const float gloss = kernel::shade_ggx(s.surface.normal, s.to_eye, light.to_light, s.material->specular, s.material->roughness);
+  const Vec3 matte = s.surface.color * ((1 - s.material->specular) * cosine / kPi);
+  return (matte + Vec3(gloss, gloss, gloss)) * light.irradiance * open;
+}
+
+/// Share of the environment's light on the surface that neither meshes nor strands keep off.
+float environment_visibility(const Shading& s, const LightRig& rig) {
+  float seen = 0, all = 0;
+  for (const PreparedLight& piece : rig.lights) {
+    if (piece.spread == 0) continue;
+    const Vec3 to_light = -piece.light.direction;
+    // A piece is wide: it lights a surface a little past the horizon of its center.
+    const float weight = std::max(dot(s.surface.normal, to_light) + 0.5f * piece.spread, 0.f) *
+                         kernel::v_luminance(piece.light.intensity);
+    if (weight == 0) continue;
+    all += weight;
+    const float open = kernel::light_transmittance(crossings_at(piece.opacity, s.surface.position));
+    seen += weight * open * mesh_visibility(piece.shadow, s.surface.position, kEnvironmentBias);
+  }
+  return all > 0 ? seen / all : 1;
+}
+
+Vec3 shade_opaque(const Scene& scene, const MeshTracer& meshes, const LightRig& rig, const Shading& s) {
+  Vec3 sum;
+  for (const PreparedLight& light : rig.lights)
+    if (light.spread == 0) sum += direct_light(scene, meshes, s, light);
+  const Vec3 ambient = environment_irradiance(rig.irradiance, s.surface.normal);
+  return sum + s.surface.color * ambient * ((1 - s.material->specular) / kPi * environment_visibility(s, rig));
+}
+
+void trace_pixel(const Scene& scene, const CameraView& view, std::span<const Vec2> positions, const MeshTracer& meshes,
+                 const LightRig& rig, int x, int y, float* depth, Vec3* color) {
+  std::array<Ray, kMaxSamples> rays;
+  std::array<RayHit, kMaxSamples> hits;
+  const std::size_t n = positions.size();
+  for (std::size_t i = 0; i < n; ++i)
+    rays[i] = camera_ray(view, static_cast<float>(x) + positions[i].x, static_cast<float>(y) + positions[i].y);
+  meshes.trace({rays.data(), n}, {hits.data(), n});
+  std::array<Shading, kMaxSamples> shaded;
+  std::array<Vec3, kMaxSamples> shades;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    depth[i] = hits[i].distance, color[i] = {0, 0, 0};
+    if (hits[i].mesh == RayHit::kNone) continue;
+    const Shading s = shading_at(scene, meshes, rays[i], hits[i]);
+    std::size_t k = 0;
+    while (k < count && !same_shade(shaded[k], s)) ++k;
+    if (k == count) shaded[count] = s, shades[count++] = shade_opaque(scene, meshes, rig, s);
+    color[i] = shades[k];
+  }
+}
+
+}  // namespace
+
+OpaqueLayer trace_opaque(const Scene& scene, const CameraView& view, std::span<const Vec2> sample_positions,
+                         const MeshTracer& meshes, const LightRig& rig) {
+  PELAGE_CHECK(!sample_positions.empty() && sample_positions.size() <= kMaxSamples);
+  OpaqueLayer layer;
+  if (meshes.empty()) return layer;
+  layer.width = view.width, layer.height = view.height, layer.samples = static_cast<int>(sample_positions.size());
+  const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+  const std::size_t n = sample_positions.size();
+  layer.depth.resize(pixels * n), layer.color.resize(pixels * n);
+  parallel_for(pixels, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      trace_pixel(scene, view, sample_positions, meshes, rig, static_cast<int>(p % static_cast<std::size_t>(view.width)),
+                  static_cast<int>(p / static_cast<std::size_t>(view.width)), layer.depth.data() + p * n,
+                  layer.color.data() + p * n);
+  });
+  return layer;
+}
+
+}  // namespace pelage
