@@ -1,0 +1,135 @@
+// Dual scattering: Zinke 2008 (references.bib: Zinke2008DualScattering), as in Huang 2025, section 3.2.
+// Derivations, and where we differ: docs/derivations/dual_scattering.md. All variances are of theta_i + theta_o.
+
+const float kDualDensity = 0.7f;  // d_f = d_b, Zinke 2008, section 4.1
+const float kBackEdgeSharpness = 6.0f;  // edge of the lit half circle: 10 to 90 % within 2.2/6 rad on both sides
+
+struct ScatterAverages {
+  Vec3 a_f;              // mean forward attenuation of a fiber
+  Vec3 a_b;              // mean backward attenuation
+  Float v_f;             // mean variance of what goes forward, radians^2
+  Float v_b;             //   backward
+  Float shift_f;         // mean shift, radians
+  Float shift_b;
+};
+
+// The local backscatter A_B M_B of the hairs around and behind.
+struct ScatterBack {
+  Vec3 a;                // A_B = A_1 + A_3
+  ScatterCone cone;      // its spread and shift, of the mean channel
+};
+
+// Averages over the front and back half circles of the lobes (Zinke 2008, eq. 6 and 12). `rest` is isotropic in azimuth.
+PELAGE_FN ScatterAverages scatter_averages(ScatterLobes l) {
+  ScatterAverages a;
+  Vec3 half_rest = l.a_rest * Float(0.5f);
+  Vec3 tt_f = l.a_tt * l.front_tt;
+  Vec3 trt_f = l.a_trt * l.front_trt;
+  Vec3 tt_b = l.a_tt - tt_f;
+  Vec3 trt_b = l.a_trt - trt_f;
+  Float r_f = l.a_r * l.front_r;
+  Float r_b = l.a_r - r_f;
+  a.a_f = v_splat(r_f) + tt_f + trt_f + half_rest;
+  a.a_b = v_splat(r_b) + tt_b + trt_b + half_rest;
+  Float third = Float(0.333333333333333f);
+  Float m_tt_f = (tt_f.x + tt_f.y + tt_f.z) * third;
+  Float m_tt_b = (tt_b.x + tt_b.y + tt_b.z) * third;
+  Float m_rest = (half_rest.x + half_rest.y + half_rest.z) * third;
+  Float m_trt_f = (trt_f.x + trt_f.y + trt_f.z) * third + m_rest;
+  Float m_trt_b = (trt_b.x + trt_b.y + trt_b.z) * third + m_rest;
+  Float inv_f = Float(1.0f) / max(r_f + m_tt_f + m_trt_f, Float(1.0e-30f));
+  Float inv_b = Float(1.0f) / max(r_b + m_tt_b + m_trt_b, Float(1.0e-30f));
+  a.v_f = (r_f * l.r.v + m_tt_f * l.tt.v + m_trt_f * l.trt.v) * inv_f;
+  a.v_b = (r_b * l.r.v + m_tt_b * l.tt.v + m_trt_b * l.trt.v) * inv_b;
+  a.shift_f = (r_f * l.r.shift + m_tt_f * l.tt.shift + m_trt_f * l.trt.shift) * inv_f;
+  a.shift_b = (r_b * l.r.shift + m_tt_b * l.tt.shift + m_trt_b * l.trt.shift) * inv_b;
+  return a;
+}
+
+// A_B of one channel: one (A_1) or three (A_3) backward events among any number of forward ones.
+// Zinke 2008, eq. 13 and 14.
+PELAGE_FN Float scatter_back_energy(Float a_f, Float a_b) {
+  Float f2 = a_f * a_f;
+  Float k = Float(1.0f) / max(Float(1.0f) - f2, Float(1.0e-4f));
+  Float a1 = a_b * f2 * k;
+  return a1 + a1 * (a_b * k) * (a_b * k);
+}
+
+// Zinke 2008, eq. 16 (shift) and 17 (standard deviation), for the mean channel.
+PELAGE_FN ScatterBack scatter_back(ScatterAverages m, ScatterLobes l) {
+  ScatterBack b;
+  b.a = Vec3(scatter_back_energy(m.a_f.x, m.a_b.x), scatter_back_energy(m.a_f.y, m.a_b.y),
+             scatter_back_energy(m.a_f.z, m.a_b.z));
+  Float third = Float(0.333333333333333f);
+  Float a_f = (m.a_f.x + m.a_f.y + m.a_f.z) * third;
+  Float a_b = (m.a_b.x + m.a_b.y + m.a_b.z) * third;
+  Float f2 = a_f * a_f;
+  Float b2 = a_b * a_b;
+  Float k = Float(1.0f) / max(Float(1.0f) - f2, Float(1.0e-4f));
+  Float shift = m.shift_b * (Float(1.0f) - Float(2.0f) * b2 * k * k) +
+                m.shift_f * (Float(2.0f) * k + Float(4.0f) * f2 * b2 * k * k * k);
+  Float one = sqrt(Float(2.0f) * m.v_f + m.v_b);
+  Float three = sqrt(Float(2.0f) * m.v_f + Float(3.0f) * m.v_b);
+  Float sigma = (Float(1.0f) + Float(kDualDensity) * f2) * (one + b2 * three) /
+                (Float(1.0f) + b2 * (Float(2.0f) * sqrt(m.v_f) + Float(3.0f) * sqrt(m.v_b)));
+  shift = v_clamp(shift, -Float(kHalfPi), Float(kHalfPi));
+  b.cone = scatter_cone(l.sin_o, l.cos_o, shift, sigma * sigma);
+  return b;
+}
+
+// Share of light that meets no hair where n hairs lie in its way on average (Poisson).
+PELAGE_FN Float scatter_dual_direct(Float n) { return m_exp(-n); }
+
+// Share of light that comes through n hairs on average after at least one forward scattering: d_f times the mean of
+// a_f^k over Poisson-distributed k >= 1. Zinke's product of a_f over exactly n hairs, without its step at n = 1.
+PELAGE_FN Vec3 scatter_dual_transmittance(Float n, Vec3 a_f) {
+  Float direct = m_exp(-n);
+  Vec3 all = v_exp((a_f - v_splat(Float(1.0f))) * n);
+  return (all - v_splat(direct)) * Float(kDualDensity);
+}
+
+// Variance that n hairs add to the light that comes through: n >= 1 of them took part. Zinke 2008, eq. 9.
+PELAGE_FN Float scatter_dual_variance(Float n, Float v_f) { return max(n, Float(1.0f)) * v_f; }
+
+// A cone widened by the variance that the light brings along.
+PELAGE_FN ScatterCone scatter_cone_widened(ScatterCone c, Float v) {
+  ScatterCone w = c;
+  w.v = c.v + v;
+  w.norm = scatter_longitudinal_norm(w.v);
+  return w;
+}
+
+// Sharpness of a pair's half circle: the logistic's slope at the edge equals the blurred pair's.
+PELAGE_FN Float scatter_pair_sharpness(ScatterPair n) {
+  Float kappa = n.kappa / (Float(1.0f) + Float(2.0f) * n.kappa * (Float(1.0f) - n.cos_mu));
+  return min(Float(1.27323954f) * kappa, Float(1.59576912f) * sqrt(kappa));
+}
+
+// N_R averaged over the half circle of azimuths that scattered light comes from: uniform, plus the first harmonic (1/3 of
+// cos(phi/2)/4, times 2/pi of the half circle). Integral over phi: 1.
+PELAGE_FN Float scatter_reflection_averaged(Float cos_phi) {
+  return Float(kInvTwoPi) * (Float(1.0f) + Float(0.424413182f) * cos_phi);
+}
+
+// f_F cos(theta_i): this fiber scatters light that other fibers scattered forward. Zinke 2008, eq. 21; Huang 2025, eq. 2.
+PELAGE_FN Vec3 scatter_dual_forward_marschner(ScatterLobes l, Float v, Float sin_i, Float cos_i, Float cos_phi) {
+  Float r = scatter_cone_value(scatter_cone_widened(l.r, v), sin_i, cos_i) * l.a_r * scatter_reflection_averaged(cos_phi);
+  Float tt = scatter_cone_value(scatter_cone_widened(l.tt, v), sin_i, cos_i) *
+             scatter_half_circle(-scatter_pair_sharpness(l.n_tt), cos_phi);
+  Float m_trt = scatter_cone_value(scatter_cone_widened(l.trt, v), sin_i, cos_i);
+  Float trt = m_trt * scatter_half_circle(scatter_pair_sharpness(l.n_trt), cos_phi);
+  return v_splat(r) + l.a_tt * tt + l.a_trt * trt + l.a_rest * (m_trt * Float(kInvTwoPi));
+}
+PELAGE_FN Vec3 scatter_dual_forward_zhu(ScatterLobes l, Float v, Float sin_i, Float cos_i, Float cos_phi) {
+  Float r = scatter_cone_value(scatter_cone_widened(l.r, v), sin_i, cos_i) * l.a_r * Float(kInvTwoPi);
+  Float tt = scatter_cone_value(scatter_cone_widened(l.tt, v), sin_i, cos_i) *
+             scatter_half_circle(-scatter_pair_sharpness(l.n_tt), cos_phi);
+  return v_splat(r) + l.a_tt * tt + l.a_rest * scatter_diffuse(cos_i);
+}
+
+// d_b f_B cos(theta_i): light that the hairs around and behind send back, on the lit half circle (soft edge).
+// v: variance that the light brings along, 0 for direct light. Zinke 2008, eq. 18; Huang 2025, eq. 3.
+PELAGE_FN Vec3 scatter_dual_local(ScatterBack b, Float v, Float sin_i, Float cos_i, Float cos_phi) {
+  Float m = scatter_cone_value(scatter_cone_widened(b.cone, v), sin_i, cos_i);
+  return b.a * (Float(kDualDensity) * m * scatter_half_circle(Float(kBackEdgeSharpness), cos_phi));
+}
