@@ -1,4 +1,4 @@
-// Dual scattering: Zinke 2008 (references.bib: Zinke2008DualScattering), as in Huang 2025, section 3.2.
+// Dual scattering: Zinke 2008 (references.bib: Zinke2008Dual), as in Huang 2025, section 3.2.
 // Derivations, and where we differ: docs/derivations/dual_scattering.md. All variances are of theta_i + theta_o.
 
 const float kDualDensity = 0.7f;  // d_f = d_b, Zinke 2008, section 4.1

@@ -34,7 +34,7 @@ PELAGE_FN Float scatter_longitudinal_norm(Float v) {
 }
 
 // M(theta_i, theta_o) without its exponential: d'Eon 2011, eq. 7, scaled by e^(...) so that nothing overflows
-// (references.bib: dEon2011EnergyConserving). Integral of M cos(theta_i) d theta_i = 1 for every theta_o and v.
+// (references.bib: dEon2011Energy). Integral of M cos(theta_i) d theta_i = 1 for every theta_o and v.
 PELAGE_FN Float scatter_longitudinal_scale(Float cos_i, Float cos_o, Float v, Float norm) {
   return norm * scatter_i0e(cos_i * cos_o / v);
 }
@@ -51,7 +51,7 @@ PELAGE_FN Float scatter_longitudinal(Float sin_i, Float cos_i, Float sin_o, Floa
 }
 
 // Concentration of the von Mises distribution with mean resultant length r in [0, 1) (Banerjee 2005, eq. 4.4 with p = 2;
-// references.bib: Banerjee2005VonMises); one_minus_r2 = 1 - r^2. Capped: a standard deviation below 0.01 rad acts as that.
+// references.bib: Banerjee2005Clustering); one_minus_r2 = 1 - r^2. Capped: a standard deviation below 0.01 rad acts as that.
 PELAGE_FN Float scatter_kappa(Float r, Float one_minus_r2) {
   return min(r * (Float(1.0f) + one_minus_r2) / max(one_minus_r2, Float(1.0e-4f)), Float(1.0e4f));
 }

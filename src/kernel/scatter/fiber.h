@@ -204,7 +204,7 @@ PELAGE_FN ScatterLobes scatter_prepare_marschner(ScatterFiber f, Float sin_o, Fl
 
 // The same for R/TT/D: R uniform in azimuth, TT one lobe of variance v_n, D isotropic with all that TRT and later paths
 // carry; its cone stands for D in the averages of dual scattering (variance of theta under cos^2: pi^2/12 - 1/2).
-// Zhu 2023 (references.bib: Zhu2023Yarn).
+// Zhu 2023 (references.bib: Zhu2023Practical).
 PELAGE_FN ScatterLobes scatter_prepare_zhu(ScatterFiber f, Float sin_o, Float cos_o) {
   ScatterLobes l = scatter_prepare_marschner(f, sin_o, cos_o);
   Float q = m_exp(-f.v_n);

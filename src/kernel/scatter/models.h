@@ -27,7 +27,7 @@ PELAGE_FN Float scatter_reflection(ScatterLobes l, Float cos_phi) {
   return Float(0.25f) * l.gain_r * c * scatter_fresnel(l.cos_o * min(c, Float(1.0f)), l.eta);
 }
 
-// R, TT, TRT and the rest; `l` from scatter_prepare_marschner. Marschner 2003 (references.bib: Marschner2003LightScattering) with d'Eon's M.
+// R, TT, TRT and the rest; `l` from scatter_prepare_marschner. Marschner 2003 (references.bib: Marschner2003Light) with d'Eon's M.
 PELAGE_FN Vec3 scatter_marschner(ScatterLobes l, Float sin_i, Float cos_i, Float cos_phi) {
   Float sin_phi = scatter_sin_phi(cos_phi);
   Float r = scatter_cone_value(l.r, sin_i, cos_i) * scatter_reflection(l, cos_phi);
@@ -44,7 +44,7 @@ PELAGE_FN Vec3 scatter_marschner(ScatterLobes l, Float sin_i, Float cos_i, Float
 // The diffuse lobe: f = 1/pi^2, the same everywhere; energy 1.
 PELAGE_FN Float scatter_diffuse(Float cos_i) { return Float(0.101321183642338f) * cos_i; }
 
-// R uniform in azimuth, TT, and D; `l` from scatter_prepare_zhu. Zhu 2023 (references.bib: Zhu2023Yarn).
+// R uniform in azimuth, TT, and D; `l` from scatter_prepare_zhu. Zhu 2023 (references.bib: Zhu2023Practical).
 PELAGE_FN Vec3 scatter_zhu(ScatterLobes l, Float sin_i, Float cos_i, Float cos_phi) {
   Float r = scatter_cone_value(l.r, sin_i, cos_i) * l.a_r * Float(kInvTwoPi);
   Float tt = scatter_longitudinal_scale(cos_i, l.tt.cos_o, l.tt.v, l.tt.norm) *

@@ -10,7 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pelage {
 namespace HWY_NAMESPACE {
 namespace wide {
-#include "kernel/scatter/scatter_parity_cases.h"
+#include "kernel/scatter/scatter_parity_cases.inc"
 }  // namespace wide
 
 // in and out are [kParity…][n] arrays; n is a multiple of every lane count.
@@ -40,7 +40,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace pelage {
 namespace kernel {
-#include "kernel/scatter/scatter_parity_cases.h"
+#include "kernel/scatter/scatter_parity_cases.inc"
 }  // namespace kernel
 
 HWY_EXPORT(run_wide);
