@@ -4,6 +4,7 @@
 #define PELAGE_KERNEL_GLSL_H_
 
 #define PELAGE_FN
+#define PELAGE_EXACT precise  // no contraction, no reassociation: for sums that cancel on purpose
 #define Float float
 #define Mask bool
 #define Vec2 vec2

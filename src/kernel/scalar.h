@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #define PELAGE_FN inline
+#define PELAGE_EXACT  // GLSL compilers need telling; here -ffp-contract=off says it for all
 
 namespace pelage::kernel {
 
@@ -47,4 +48,5 @@ using pelage::dot;
 
 }  // namespace pelage::kernel
 
+#undef PELAGE_EXACT
 #undef PELAGE_FN

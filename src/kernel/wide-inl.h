@@ -31,6 +31,7 @@ using IntTag = hn::RebindToSigned<FloatTag>;
 using UintTag = hn::RebindToUnsigned<FloatTag>;
 
 #define PELAGE_FN HWY_INLINE
+#define PELAGE_EXACT
 
 inline constexpr FloatTag kFloatTag{};
 HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(FloatTag())); }
@@ -128,6 +129,7 @@ struct Vec4 {
 
 #include "kernel/kernels.inc"
 
+#undef PELAGE_EXACT
 #undef PELAGE_FN
 
 }  // namespace wide

@@ -20,7 +20,7 @@ const float kTwoPi = 6.28318530717959f;
 PELAGE_FN Float m_exp(Float x0) {
   Float x = min(max(x0, Float(-87.0f)), Float(88.0f));
   Float n = floor(x * Float(1.44269504088896f) + Float(0.5f));
-  Float r = (x - n * Float(0.693359375f)) - n * Float(-2.12194440e-4f);
+  PELAGE_EXACT Float r = (x - n * Float(0.693359375f)) - n * Float(-2.12194440e-4f);
   Float p = Float(1.9875691500e-4f);
   p = p * r + Float(1.3981999507e-3f);
   p = p * r + Float(8.3334519073e-3f);
@@ -75,7 +75,9 @@ PELAGE_FN Float m_cos_poly(Float r) {
 // x reduced to [-pi/4, pi/4]; quadrant n mod 4 in 0..3.
 PELAGE_FN Float m_quadrant(Float x) { return floor(x * Float(0.636619772367581f) + Float(0.5f)); }
 PELAGE_FN Float m_reduce(Float x, Float n) {
-  return ((x - n * Float(1.5703125f)) - n * Float(4.837512969970703125e-4f)) - n * Float(7.54978995489188216e-8f);
+  PELAGE_EXACT Float r = ((x - n * Float(1.5703125f)) - n * Float(4.837512969970703125e-4f)) -
+                         n * Float(7.54978995489188216e-8f);
+  return r;
 }
 
 PELAGE_FN Float m_sin(Float x) {
