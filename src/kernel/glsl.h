@@ -10,6 +10,9 @@
 #define Vec2 vec2
 #define Vec3 vec3
 #define Vec4 vec4
+// Names that only GLSL reserves.
+#define half half_
+#define sample sample_
 
 float select(bool m, float a, float b) { return m ? a : b; }
 vec2 select(bool m, vec2 a, vec2 b) { return m ? a : b; }

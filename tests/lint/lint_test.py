@@ -16,18 +16,20 @@ CLEAN = {
             "struct CurveSpan {\n  Vec3 p0, p1;\n};\n"
             "PELAGE_FN Float curve_half(Float t) {\n"
             "  Mask low = t < Float(0.5f) && t >= Float(-2.0f);\n"
-            "  return select(low, t * Float(0.5f), t);\n}\n",
+            "  return select(low, t * Float(0.5f), t);\n}\n"
+            "PELAGE_FN Float curve_quarter(Float t) { return curve_half(curve_half(t)); }\n",
     "src/raster/dda.cpp": '#include "core/buffer.h"\n#include "frame/frame.h"\n#include "kernel/scalar.h"\n',
     "src/raster/dda_test.cpp": '#include "assemble/assemble.h"\n',
     "src/frame/frame.cpp": '#include "raster/dda.h"\n',
     "include/pelage/io.h": "#include <pelage/image.h>\n",
+    "tests/parity/parity_cases.inc": "PELAGE_PARITY(curve_quarter, 0.0f, (0.0f, 1.0f), curve_quarter(a))\n",
     "references.bib": "@inproceedings{Catmull1974Splines,\n}\n",
 }
 
 # check, file, line to add, words of the finding
 BROKEN = [
     ("includes", "src/raster/dda.cpp", '#include "assemble/assemble.h"', "raster must not include assemble/assemble.h"),
-    ("includes", "src/raster/dda.cpp", '#include "frame/stages.h"', "raster must not include frame/stages.h"),
+    ("includes", "src/frame/frame.h", '#include "raster/dda.h"', "frame must not include raster/dda.h"),
     ("includes", "src/kernel/scalar.h", '#include "raster/dda.h"', "kernel must not include raster/dda.h"),
     ("includes", "src/frame/frame.cpp", '#include "cli/main.h"', "frame must not include cli/main.h"),
     ("includes", "src/extra/new.cpp", "", "has no row"),
@@ -43,6 +45,7 @@ BROKEN = [
     ("kernel-subset", KERNEL, "PELAGE_FN Float bend(Float t) { return t; }", "lacks the prefix curve_"),
     ("kernel-subset", KERNEL, "Float curve_x(Float t) { return t; }", "does not start with PELAGE_FN"),
     ("kernel-subset", KERNEL, "PELAGE_FN Float curve_x(Float t) { double s; return t; }", "only real type"),
+    ("parity", KERNEL, "PELAGE_FN Float curve_x(Float t) { return t; }", "curve_x has no line"),
     ("kernel-subset", "src/kernel/light/falloff.h", "", "not listed"),
     ("length", "src/raster/dda.cpp", "\n" * 1000, "split it"),
     ("leftovers", "src/raster/dda.cpp", "// TODO: later", "unfinished"),
