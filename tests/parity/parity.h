@@ -2,6 +2,9 @@
 
 const float kParityRounding = 1.0e-6f;  // GLSL may contract a·b + c and divide to within 2.5 ulp: a few roundings
 const float kParityPow = 4.0e-6f;       // e^(y·log x): the error of the logarithm grows with y
+const float kParityScatter = 4.0e-6f;   // some ten roundings and elementary functions in a row
+const float kParityLobe = 5.0e-5f;      // exponents and concentrations of narrow lobes multiply those errors
+const float kParityPair = 1.0e-3f;      // a pair's separation near 0 is the root of a difference: the root of a rounding
 const float kParityGgx = 1.0e-5f;       // the narrow peak multiplies the error of the half vector
 
 PELAGE_FN Vec4 parity_result(Float x) { return Vec4(x, Float(0.0f), Float(0.0f), Float(0.0f)); }
@@ -27,4 +30,27 @@ PELAGE_FN Vec4 parity_harmonics_low(Vec3 n) {
 PELAGE_FN Vec4 parity_harmonics_high(Vec3 n) {
   LightHarmonics h = light_harmonics(n);
   return Vec4(h.c2nn + h.c2n, h.c20, h.c2p, h.c2pp);
+}
+
+// A fiber of one melanin concentration, seen from theta_o.
+PELAGE_FN ScatterFiber parity_fiber(Float beta_m, Float beta_n, Float eumelanin, Float eta, Float tilt) {
+  return scatter_fiber(eta, beta_m, beta_n, tilt, Float(1.0f), scatter_melanin(eumelanin, Float(0.2f)));
+}
+PELAGE_FN ScatterLobes parity_lobes(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta, Float tilt) {
+  return scatter_prepare_marschner(parity_fiber(beta_m, beta_n, eumelanin, eta, tilt), m_sin(theta_o), m_cos(theta_o));
+}
+PELAGE_FN ScatterLobes parity_lobes_zhu(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta,
+                                        Float tilt) {
+  return scatter_prepare_zhu(parity_fiber(beta_m, beta_n, eumelanin, eta, tilt), m_sin(theta_o), m_cos(theta_o));
+}
+PELAGE_FN Vec4 parity_energies(ScatterLobes l) { return Vec4(l.a_r, l.a_tt.x, l.a_trt.y, l.a_rest.z); }
+PELAGE_FN Vec4 parity_pairs(ScatterLobes l) { return Vec4(l.n_tt.cos_mu, l.n_tt.norm, l.n_trt.cos_mu, l.n_trt.norm); }
+PELAGE_FN Vec3 parity_fronts(ScatterLobes l) { return Vec3(l.front_r, l.front_tt, l.front_trt); }
+PELAGE_FN Vec4 parity_averages(ScatterAverages a) { return Vec4(a.a_f.x, a.a_b.y, a.v_f + a.v_b, a.shift_f + a.shift_b); }
+PELAGE_FN Vec4 parity_back(ScatterLobes l) {
+  ScatterBack b = scatter_back(scatter_averages(l), l);
+  return Vec4(b.a.x, b.a.z, b.cone.v, b.cone.shift);
+}
+PELAGE_FN Vec3 parity_local(ScatterLobes l, Float v, Float theta_i, Float cos_phi) {
+  return scatter_dual_local(scatter_back(scatter_averages(l), l), v, m_sin(theta_i), m_cos(theta_i), cos_phi);
 }
