@@ -56,6 +56,9 @@ struct ShadeConstants {
   std::vector<LightConstants> lights;
 };
 
+/// Radians: a light of more spread than this counts as coming from a half circle of azimuths.
+inline constexpr float kWideSpread = 0.25f;
+
 std::vector<LightConstants> light_constants(const LightRig& rig);
 
 }  // namespace pelage

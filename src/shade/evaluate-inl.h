@@ -120,7 +120,9 @@ PELAGE_LANES_FN ShadePlace shade_place(const HairMaterial& material, const Shade
   s.across_o = v_normalize(to_eye - s.tangent * sin_o);
   s.fiber = scatter_fiber(Float(material.eta), Float(material.beta_longitudinal), Float(material.beta_azimuthal),
                           Float(material.cuticle_tilt), Float(material.specular_gain), absorption);
-  s.lobes = scatter_prepare(s.fiber, sin_o, sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f))));
+  const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
+  s.lobes = material.model == HairMaterial::Model::kZhu ? scatter_prepare_zhu(s.fiber, sin_o, cos_o)
+                                                        : scatter_prepare_marschner(s.fiber, sin_o, cos_o);
   s.averages = scatter_averages(s.lobes);
   s.back = scatter_back(s.averages, s.lobes);
   s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
