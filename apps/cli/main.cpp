@@ -18,6 +18,8 @@ namespace {
 constexpr int kFailed = 1, kUsage = 2;
 
 void add_verbs(CLI::App& app) {
+  add_info(app);
+  add_convert(app);
   add_bench(app);
 }
 

@@ -181,7 +181,7 @@ class Compactor {
     const std::uint32_t count = good > begin ? (good - begin - 1) / 3 * 3 + 1 : 0;
     if (good == end) report_.partial_spans += end - begin - count;
     for (std::uint32_t i = begin; i < begin + count; ++i) move_point(i);
-    return good - begin;
+    return count;
   }
 
   void move_point(std::uint32_t from) {

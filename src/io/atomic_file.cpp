@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 namespace pelage::io {
@@ -45,6 +46,8 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   if (path.empty()) throw Error("output", "", "an empty file name", "name a file");
   struct stat status = {};
   const bool exists = ::stat(path.c_str(), &status) == 0;
+  std::error_code ignored;  // a link is followed: it stays, and what it points to is replaced
+  if (std::filesystem::is_symlink(path, ignored)) path_ = std::filesystem::weakly_canonical(path, ignored).string();
   if (exists && S_ISDIR(status.st_mode)) throw Error(path, "", "a directory, not a file", "name a file inside it");
   if (exists && !S_ISREG(status.st_mode)) {
     descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
@@ -53,7 +56,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   }
   static std::atomic<unsigned> counter{0};
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
-    temporary_ = fmt::format("{}.{}-{}.tmp", path, ::getpid(), counter++);
+    temporary_ = fmt::format("{}.{}-{}.tmp", path_, ::getpid(), counter++);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
   }

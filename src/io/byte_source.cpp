@@ -64,20 +64,22 @@ void ByteSource::require(std::uint64_t offset, std::uint64_t bytes, const char* 
 void ByteSource::read(std::uint64_t offset, std::size_t bytes, void* target, const char* what) const {
   require(offset, bytes, what);
   if (bytes == 0) return;
-  if (descriptor_ < 0) {
-    std::memcpy(target, memory_.data() + offset, bytes);
-    return;
-  }
-  auto* to = static_cast<std::byte*>(target);
+  if (descriptor_ < 0 || bytes <= kWindowBytes / 4)
+    std::memcpy(target, window(offset, bytes, what), bytes);
+  else
+    read_file(offset, bytes, static_cast<std::byte*>(target), what);
+}
+
+void ByteSource::read_file(std::uint64_t offset, std::size_t bytes, std::byte* target, const char* what) const {
   while (bytes > 0) {
-    const ssize_t got = ::pread(descriptor_, to, bytes, static_cast<off_t>(offset));
+    const ssize_t got = ::pread(descriptor_, target, bytes, static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0)
       throw Error(name_, fmt::format("byte {}", offset),
                   got == 0 ? fmt::format("the file ended while its {} was read", what)
                            : fmt::format("reading the {} failed: {}", what, std::strerror(errno)),
                   "does another program write to it?");
-    to += got, offset += static_cast<std::uint64_t>(got), bytes -= static_cast<std::size_t>(got);
+    target += got, offset += static_cast<std::uint64_t>(got), bytes -= static_cast<std::size_t>(got);
   }
 }
 
@@ -87,7 +89,7 @@ const std::byte* ByteSource::window(std::uint64_t offset, std::size_t bytes, con
   if (offset < window_begin_ || offset + bytes > window_begin_ + window_.size()) {
     window_.resize(std::min<std::uint64_t>(std::max(kWindowBytes, bytes), size_ - offset));
     window_begin_ = offset;
-    read(offset, window_.size(), window_.data(), what);
+    read_file(offset, window_.size(), window_.data(), what);
   }
   return window_.data() + (offset - window_begin_);
 }

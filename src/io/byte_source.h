@@ -31,7 +31,7 @@ class ByteSource {
 
   /// Throws Error unless [offset, offset + bytes) is inside; `what` says what should stand there ("point array").
   void require(std::uint64_t offset, std::uint64_t bytes, const char* what) const;
-  /// Copies bytes to `target`.
+  /// Copies bytes to `target`. Small pieces come from the window.
   void read(std::uint64_t offset, std::size_t bytes, void* target, const char* what) const;
   /// One little-endian number or packed struct; neighbors are buffered.
   template <class T>
@@ -46,6 +46,7 @@ class ByteSource {
 
  private:
   ByteSource(std::string name, int descriptor, std::uint64_t size);
+  void read_file(std::uint64_t offset, std::size_t bytes, std::byte* target, const char* what) const;
   const std::byte* window(std::uint64_t offset, std::size_t bytes, const char* what) const;
 
   std::string name_;

@@ -66,7 +66,6 @@ class ObjReader {
     }
     if (mesh_.triangles.empty())
       throw Error(name_, "", "no faces", positions_.empty() ? "is it a mesh? OBJ, PLY and glb are read" : "");
-    if (!all_have_normals_) mesh_.normals.clear();
     if (!all_have_uv_) mesh_.uv.clear();
     return std::move(mesh_);
   }
@@ -149,7 +148,6 @@ class ObjReader {
       mesh_.uv.push_back(c.uv == kNone ? Vec2() : uvs_[c.uv]);
       mesh_.normals.push_back(c.normal == kNone ? Vec3() : normals_[c.normal]);
       all_have_uv_ &= c.uv != kNone;
-      all_have_normals_ &= c.normal != kNone;
     }
     return entry->second;
   }
@@ -165,7 +163,7 @@ class ObjReader {
   std::vector<Vec2> uvs_;
   std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
   TriangleMesh mesh_;
-  bool all_have_uv_ = true, all_have_normals_ = true;
+  bool all_have_uv_ = true;
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace pelage::io {
 
-extern const StrandFormat kPelage, kCyHair, kTressFx, kUsc;
+extern const StrandFormat kPelage, kCyHair, kTressFx, kTressFx3, kUsc;
 
 /// Attributes beyond points that a format can hold; for report_lost().
 enum StrandAttribute : unsigned {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string_view>
 
 #include "io/strand_formats.h"
@@ -26,7 +27,6 @@ constexpr Foreign kForeign[] = {
     {"\x80\xBF\x80\x46IBER", "a Tungsten fiber file"},
     {"BINARY_HAIR", "a Mitsuba 0.6 hair file"},
     {"version 2", "a TressFX 2 text file"},
-    {std::string_view("\0\0\x40\x40", 4), "a TressFX 3 file"},
     {"ply\n", "a PLY file (a mesh or a point cloud)"},
     {"ply\r\n", "a PLY file (a mesh or a point cloud)"},
     {"glTF", "a binary glTF file (a mesh)"},
@@ -43,10 +43,25 @@ bool begins_with(const ByteSource& source, std::string_view magic) {
   return head == magic;
 }
 
+// Foreign formats without a magic number, known by how their counts explain the file's size.
+std::string_view headerless_name(const ByteSource& source) {
+  if (source.size() < 8) return "";
+  const std::uint64_t n = source.get<std::uint32_t>(0, "count"), second = source.get<std::uint32_t>(4, "count");
+  if (n > 0 && source.size() == 8 + 2 * n + 12 * second) return "a MonoHair .hair file";
+  constexpr std::uint64_t kPoint = 28;  // position, normal, label
+  std::uint64_t at = 4;
+  for (std::uint64_t s = 0; s < n && source.size() - at >= 4; ++s) {
+    const std::uint64_t m = source.get<std::uint32_t>(at, "count");
+    if (m > (source.size() - at - 4) / kPoint) return "";
+    at += 4 + kPoint * m;
+  }
+  return n > 0 && at == source.size() ? "a CT2Hair .bin file" : "";
+}
+
 }  // namespace
 
 const std::vector<const StrandFormat*>& strand_registry() {
-  static const std::vector<const StrandFormat*> formats = {&kCyHair, &kTressFx};
+  static const std::vector<const StrandFormat*> formats = {&kPelage, &kCyHair, &kTressFx, &kTressFx3, &kUsc};
   return formats;
 }
 
@@ -62,6 +77,8 @@ const StrandFormat& detect_strand_format(const ByteSource& source) {
     if (begins_with(source, foreign.magic))
       throw Error(source.name(), "", fmt::format("this is {}; not supported yet as a groom", foreign.name),
                   "export .hair, .tfx or .data");
+  if (const std::string_view name = headerless_name(source); !name.empty())
+    throw Error(source.name(), "", fmt::format("this looks like {}; not supported yet", name), "export .hair or .data");
   throw Error(source.name(), "", "not a groom in any known format", tried);
 }
 

@@ -1,4 +1,5 @@
-// TressFX 4 binary `.tfx` (GPUOpen TressFXFileFormat.h, corrected against real files): docs/formats.md.
+// TressFX binary `.tfx`, version 4 and (reading only) 3, after GPUOpen's TressFXFileFormat.h corrected against real
+// files: docs/formats.md.
 #include <pelage/error.h>
 
 #include <fmt/format.h>
@@ -20,12 +21,30 @@ struct Header {
 };
 static_assert(sizeof(Header) == 160);
 
+struct Header3 {
+  float version;
+  std::uint32_t strands, points_per_strand, follow_strands, both_ends_fixed;
+  std::uint32_t reserved1[31];
+  std::uint32_t positions, strand_thickness, strand_uv, vertex_color, guide_strand, vertex_uv;
+  std::uint32_t reserved2[32];
+};
+static_assert(sizeof(Header3) == 296);
+
+// What both versions come to.
+struct Contents {
+  std::uint64_t strands, points_per_strand;
+  std::uint64_t header_bytes, position_bytes;  // a position is Vec4 in version 4, Vec3 in 3
+  std::uint32_t positions, strand_uv, strand_thickness, vertex_color, vertex_uv;
+  std::uint64_t points() const { return strands * points_per_strand; }
+};
+
 constexpr std::size_t kChunk = 64 * 1024;  // records read at once
 
+template <int kVersion>
 std::string mismatch(const ByteSource& source) {
   if (source.size() < sizeof(float)) return "shorter than its version number";
   const auto version = source.get<float>(0, "version");
-  return version >= 4 && version < 5 ? "" : "does not begin with version 4.0";
+  return version >= kVersion && version < kVersion + 1 ? "" : fmt::format("does not begin with version {}.0", kVersion);
 }
 
 // Calls store(i, record) for each of `count` records that begin at `offset`.
@@ -40,55 +59,82 @@ void for_each_record(const ByteSource& source, std::uint64_t offset, std::size_t
   }
 }
 
-void check_array(const ByteSource& source, std::uint32_t offset, std::uint64_t bytes, const char* what) {
-  if (offset < sizeof(Header))
+void check_array(const ByteSource& source, const Contents& h, std::uint32_t offset, std::uint64_t bytes, const char* what) {
+  if (offset < h.header_bytes)
     throw Error(source.name(), "header", fmt::format("{} said to begin at byte {}, inside the header", what, offset),
                 "the file is damaged; export it again");
   source.require(offset, bytes, what);
 }
 
-FileStrands read(const ByteSource& source, const Progress& progress) {
-  const Header h = source.get<Header>(0, "header");
-  const std::uint64_t n = h.strands, count = n * h.points_per_strand;
-  const std::string& name = source.name();
-  if (n > 0 && h.points_per_strand == 0)
-    throw Error(name, "header", fmt::format("{} strands of 0 points announced", n), "the file is damaged; export it again");
-  if (count > UINT32_MAX)
-    throw Error(name, "header", fmt::format("{} strands of {} points announced, more than 2^32 points", n,
-                                            h.points_per_strand),
-                "the file is damaged; export it again");
-  // Everything that is present is checked before anything is allocated.
-  check_array(source, h.positions, count * sizeof(Vec4), "point array");
-  if (h.strand_uv) check_array(source, h.strand_uv, n * sizeof(Vec2), "strand uv array");
-  if (h.strand_thickness) check_array(source, h.strand_thickness, n * sizeof(float), "strand thickness array");
-  if (h.vertex_color) check_array(source, h.vertex_color, count * sizeof(Vec4), "vertex color array");
+// Everything that is present, before anything is allocated.
+void check_sizes(const ByteSource& source, const Contents& h) {
+  const auto bad = [&](const std::string& problem) {
+    throw Error(source.name(), "header", problem, "the file is damaged; export it again");
+  };
+  if (h.strands > 0 && h.points_per_strand == 0) bad(fmt::format("{} strands of 0 points announced", h.strands));
+  if (h.points() > UINT32_MAX)
+    bad(fmt::format("{} strands of {} points announced, more than 2^32 points", h.strands, h.points_per_strand));
+  check_array(source, h, h.positions, h.points() * h.position_bytes, "point array");
+  if (h.strand_uv) check_array(source, h, h.strand_uv, h.strands * sizeof(Vec2), "strand uv array");
+  if (h.strand_thickness) check_array(source, h, h.strand_thickness, h.strands * sizeof(float), "strand thickness array");
+  if (h.vertex_color) check_array(source, h, h.vertex_color, h.points() * sizeof(Vec4), "vertex color array");
+}
 
+template <class Position>
+void read_points(const ByteSource& source, const Contents& h, std::vector<Vec3>& points, const Progress& progress) {
+  points.resize(h.points());
+  for_each_record<Position>(source, h.positions, points.size(), "point array", [&](std::size_t i, const Position& p) {
+    points[i] = {p.x, p.y, p.z};  // w, where there is one, is the inverse mass of the simulation
+    if (i % kChunk == 0)
+      tell(progress, "io.read", static_cast<double>(i) / static_cast<double>(points.size()), source.name());
+  });
+}
+
+FileStrands read_contents(const ByteSource& source, const Contents& h, const Progress& progress) {
+  check_sizes(source, h);
   FileStrands file;
   StrandSet& set = file.strands;
-  set.offsets.resize(n + 1);
-  for (std::uint64_t s = 0; s <= n; ++s) set.offsets[s] = static_cast<std::uint32_t>(s * h.points_per_strand);
-  set.points.resize(count);
-  for_each_record<Vec4>(source, h.positions, count, "point array", [&](std::size_t i, const Vec4& p) {
-    set.points[i] = {p.x, p.y, p.z};  // w is the inverse mass of the simulation
-    if (i % kChunk == 0) tell(progress, "io.read", static_cast<double>(i) / static_cast<double>(count), name);
-  });
+  set.offsets.resize(h.strands + 1);
+  for (std::uint64_t s = 0; s <= h.strands; ++s) set.offsets[s] = static_cast<std::uint32_t>(s * h.points_per_strand);
+  if (h.position_bytes == sizeof(Vec4))
+    read_points<Vec4>(source, h, set.points, progress);
+  else
+    read_points<Vec3>(source, h, set.points, progress);
   if (h.strand_uv) {
-    set.root_uv.resize(n);
-    for_each_record<Vec2>(source, h.strand_uv, n, "strand uv array", [&](std::size_t i, Vec2 uv) { set.root_uv[i] = uv; });
+    set.root_uv.resize(h.strands);
+    for_each_record<Vec2>(source, h.strand_uv, h.strands, "strand uv array",
+                          [&](std::size_t s, Vec2 uv) { set.root_uv[s] = uv; });
   }
   if (h.strand_thickness) {
-    set.widths.resize(count);
-    for_each_record<float>(source, h.strand_thickness, n, "strand thickness array", [&](std::size_t s, float width) {
-      std::fill(set.widths.begin() + set.offsets[s], set.widths.begin() + set.offsets[s + 1], width);
-    });
+    set.widths.resize(h.points());
+    for_each_record<float>(source, h.strand_thickness, h.strands, "strand thickness array",
+                           [&](std::size_t s, float width) {
+                             std::fill(set.widths.begin() + set.offsets[s], set.widths.begin() + set.offsets[s + 1], width);
+                           });
   }
   if (h.vertex_color) {
-    set.colors.resize(count);
-    for_each_record<Vec4>(source, h.vertex_color, count, "vertex color array",
+    set.colors.resize(h.points());
+    for_each_record<Vec4>(source, h.vertex_color, h.points(), "vertex color array",
                           [&](std::size_t i, const Vec4& c) { set.colors[i] = {c.x, c.y, c.z}; });
     file.notes.emplace_back("the alpha of the vertex colors was ignored");
   }
   if (h.vertex_uv) file.notes.emplace_back("texture coordinates along the strands were ignored");
+  return file;
+}
+
+FileStrands read(const ByteSource& source, const Progress& progress) {
+  const Header h = source.get<Header>(0, "header");
+  return read_contents(source, {h.strands, h.points_per_strand, sizeof(Header), sizeof(Vec4), h.positions, h.strand_uv,
+                                h.strand_thickness, h.vertex_color, h.vertex_uv}, progress);
+}
+
+FileStrands read3(const ByteSource& source, const Progress& progress) {
+  const Header3 h = source.get<Header3>(0, "header");
+  FileStrands file = read_contents(source, {h.strands, h.points_per_strand, sizeof(Header3), sizeof(Vec3), h.positions,
+                                            h.strand_uv, h.strand_thickness, h.vertex_color, h.vertex_uv}, progress);
+  if (h.guide_strand) file.notes.emplace_back("guide indices were ignored");
+  if (h.follow_strands)
+    file.notes.push_back(fmt::format("the file asks for {} more strands around each; only its own are here", h.follow_strands));
   return file;
 }
 
@@ -147,6 +193,9 @@ std::vector<std::string> write(AtomicFile& file, const StrandSet& set, const Pro
 }  // namespace
 
 const StrandFormat kTressFx = {
-    {"tressfx", "TressFX 4 binary, Y up, guides only", {"tfx"}, true, true}, mismatch, read, write};
+    {"tressfx", "TressFX 4 binary, Y up, any unit; every strand has as many points", {"tfx"}, true, true},
+    mismatch<4>, read, write};
+const StrandFormat kTressFx3 = {
+    {"tressfx3", "TressFX 3 binary, Y up, any unit", {"tfx"}, true, false}, mismatch<3>, read3, nullptr};
 
 }  // namespace pelage::io

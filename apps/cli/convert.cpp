@@ -1,0 +1,70 @@
+// pelage convert IN OUT: a groom or a mesh in another format, in meters and Y up.
+#include <fmt/format.h>
+#include <pelage/pelage.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "import_options.h"
+#include "io/byte_source.h"
+#include "io/file_kind.h"
+#include "terminal.h"
+#include "verbs.h"
+
+namespace pelage::cli {
+namespace {
+
+struct Options {
+  std::string in, out, format;
+  ImportOptions import;
+};
+
+void convert_groom(const Options& options) {
+  ImportReport report;
+  ProgressLine line;
+  const StrandSet set = read_strands(options.in, options.import, &report, line.callback());
+  const std::vector<std::string> lost = write_strands(options.out, set, options.format, line.callback());
+  fmt::print(stderr, "{}: {} strands, {} points\n{}", options.out, set.strand_count(), set.point_count(),
+             import_summary(report));
+  for (const std::string& sentence : lost) fmt::print(stderr, "  {}\n", sentence);
+}
+
+void convert_mesh(const Options& options) {
+  const float scale = options.import.scale > 0 ? options.import.scale : 1;
+  const TriangleMesh mesh = read_mesh(options.in, scale, options.import.up == UpAxis::kZ ? UpAxis::kZ : UpAxis::kY);
+  write_mesh(options.out, mesh);
+  fmt::print(stderr, "{}: {} triangles, {} vertices\n", options.out, mesh.triangles.size(), mesh.positions.size());
+}
+
+void run(const Options& options) {
+  switch (io::file_kind(io::ByteSource::open(options.in)).content) {
+    case io::FileContent::kMesh: return convert_mesh(options);
+    case io::FileContent::kImage: throw Error(options.in, "", "an image", "convert takes grooms and meshes");
+    case io::FileContent::kGroom: return convert_groom(options);
+  }
+}
+
+std::string known_formats() {
+  std::string names;
+  for (const FormatInfo& format : strand_formats())
+    if (format.writes) names += fmt::format("{}{}", names.empty() ? "" : ", ", format.name);
+  return names;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("convert", "Writes a groom or a mesh in another format");
+  verb->footer("Examples:\n  pelage convert hair.tfx hair.pelage\n  pelage convert model.hair model.data --scale 0.01 --up z");
+  verb->add_option("in", options->in, "Groom or mesh")->required()->type_name("FILE");
+  verb->add_option("out", options->out, "File to write; its extension names the format")->required()->type_name("FILE");
+  verb->add_option("--format", options->format, "Groom format to write, whatever the extension: " + known_formats())
+      ->type_name("NAME");
+  add_import_options(*verb, options->import);
+  add_machine_options(*verb);
+  verb->callback([options] { run(*options); });
+}
+
+}  // namespace pelage::cli
