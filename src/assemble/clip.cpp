@@ -47,20 +47,6 @@ void append(ScreenBlock& block, const CameraView& view, const Point& p, std::uin
 
 }  // namespace
 
-bool needs_clipping(const AssembleJob& job, const ScreenBlock& block) {
-  const CameraView& v = job.view;
-  const float reach = kGuardBand + std::min(std::min(v.center_x, v.width - v.center_x),
-                                            std::min(v.center_y, v.height - v.center_y));
-  bool out = false;
-  for (std::size_t i = 0; i < block.count; ++i) {
-    const float limit = reach * (v.perspective ? block.depth[i] : 1.f);
-    const bool near = block.depth[i] < v.near_plane;
-    const bool far = v.focal * std::max(std::fabs(block.x[i]), std::fabs(block.y[i])) > limit;
-    out = out || near || far;
-  }
-  return out;
-}
-
 void clip(const AssembleJob& job, ScreenBlock& block) {
   struct Input {
     Point p;

@@ -91,7 +91,7 @@ struct OpaqueLayer {
 /// Crossings are expectations: the mean over a texel's rays of the number of strands that a ray meets.
 struct OpacityMap {
   static constexpr int kLayers = 8;
-  static constexpr float kCrossingUnit = 1.f / 65536;  ///< strands per unit of `crossings`
+  static constexpr float kCrossingUnit = 1.f / 8192;   ///< strands per unit of `crossings`
   static constexpr int kOriginBlock = 4;               ///< texels a side that share one first depth
   CameraView view;                       ///< the light as a camera; its width × height are the map's
   Buffer<float> first_depth;             ///< [⌈h/4⌉·⌈w/4⌉] depth of a block's first strand, metres; +inf for none

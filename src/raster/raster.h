@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "frame/frame.h"
+#include "raster/keys.h"
 
 namespace pelage {
 
@@ -19,11 +20,6 @@ struct RasterLayers {
   bool analytic = false;      ///< area and tangent: raster/analytic.h
   bool overdraw = false;      ///< count the fragments at the pixel's center, hidden ones too
 };
-
-/// Key of a fragment; see PixelKey. depth > 0.
-PixelKey pixel_key(float depth, std::uint32_t id);
-float key_depth(PixelKey key);                                            ///< metres; for non-empty keys
-inline std::uint32_t key_id(PixelKey key) { return static_cast<std::uint32_t>(key); }
 
 /// Rasterizes every strand of `scene` into `out`: resizes and clears the layers that `layers` asks for, empties the others,
 /// then streams assemble → raster, a block of points per thread at a time. The result has the same bits for any number

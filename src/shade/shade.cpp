@@ -1,39 +1,94 @@
 #include "shade/shade.h"
 
-#include <bit>
+#include <array>
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "frame/light_lookup.h"
 #include "frame/segment_lookup.h"
-#include "kernel/scalar.h"
+#include "shade/batch.h"
+#include "shade/evaluate.h"
+#include "shade/fiber.h"
 #include "shade/visible.h"
 
 namespace pelage {
 namespace {
 
-constexpr ShadowBias kHairBias{0.002f, 1.5f};
+/// Everything that gathering reads.
+struct Gather {
+  const Scene& scene;
+  const CameraView& view;
+  const SegmentNumbering& numbering;
+  std::span<const Vec2> sample_positions;
+};
 
-Vec3 shade_sample(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const LightRig& rig,
-                  Vec2 screen, PixelKey key) {
-  const SegmentRef segment = find_segment(scene, numbering, static_cast<std::uint32_t>(key));
-  const float t = locate_on_segment(scene, numbering, view, segment, screen.x, screen.y);
-  const StrandSurface s = surface_at(scene, numbering, segment, t);
-  const HairMaterial& material = scene.grooms[segment.groom].material;
-  const Vec3 eye = transform_point(view.camera_to_world, {0, 0, 0});
-  const Vec3 to_eye = normalize(eye - s.position);
-  Vec3 sum;
-  for (const PreparedLight& light : rig.lights) {
-    const Illumination i = illuminate(light, s.position);
-    const float sin_i = dot(i.to_light, s.tangent), cos_i = std::sqrt(std::max(0.f, 1 - sin_i * sin_i));
-    const float sin_o = dot(to_eye, s.tangent);
-    const float h = kernel::m_asin(sin_i) + kernel::m_asin(sin_o), v = 4 * material.beta_longitudinal * material.beta_longitudinal;
-    const float open = kernel::light_transmittance(0.4f * crossings_at(light.opacity, s.position)) *
-                       mesh_visibility(light.shadow, s.position, kHairBias);
-    const float gloss = 0.02f * std::exp(-h * h / (2 * v)) / std::sqrt(v);
-    sum += (material.color * (cos_i * 0.2f) + Vec3(gloss, gloss, gloss)) * i.irradiance * open;
+Vec2 screen_place(const Gather& g, const VisibleSample& s) {
+  const std::uint32_t width = static_cast<std::uint32_t>(g.view.width);
+  const Vec2 in_pixel = g.sample_positions[s.sample];
+  return {static_cast<float>(s.pixel % width) + in_pixel.x, static_cast<float>(s.pixel / width) + in_pixel.y};
+}
+
+Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
+  if (view.perspective) return normalize(transform_point(view.camera_to_world, {0, 0, 0}) - position);
+  return normalize(transform_vector(view.camera_to_world, {0, 0, -1}));
+}
+
+/// Color of a strand at a point: its own where it has one, else the material's.
+Vec3 strand_color(const GroomInstance& groom, const SegmentRef& s) {
+  const StrandSet& set = *groom.strands;
+  if (set.colors.empty()) return groom.material.color;
+  if (set.colors.size() == set.strand_count()) return set.colors[s.strand];
+  const std::uint32_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
+  return set.colors[set.offsets[s.strand] + s.span * stride];
+}
+
+void gather_lane(const Gather& g, const VisibleSample& sample, const SegmentRef& segment, ShadeBatch& batch, std::size_t i) {
+  const GroomInstance& groom = g.scene.grooms[segment.groom];
+  const Vec2 at = screen_place(g, sample);
+  const float t = locate_on_segment(g.scene, g.numbering, g.view, segment, at.x, at.y);
+  const StrandSurface s = surface_at(g.scene, g.numbering, segment, t);
+  const Vec3 to_eye = direction_to_eye(g.view, s.position);
+  const Vec3 absorption = fiber_absorption(groom.material, strand_color(groom, segment));
+  batch.px[i] = s.position.x, batch.py[i] = s.position.y, batch.pz[i] = s.position.z;
+  batch.tx[i] = s.tangent.x, batch.ty[i] = s.tangent.y, batch.tz[i] = s.tangent.z;
+  batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
+  batch.absorb_r[i] = absorption.x, batch.absorb_g[i] = absorption.y, batch.absorb_b[i] = absorption.z;
+}
+
+/// Copies lane 0 behind the last one, so that whole vectors see valid numbers.
+void pad(ShadeBatch& batch) {
+  for (ShadeBatch::Lanes* lanes : {&batch.px, &batch.py, &batch.pz, &batch.tx, &batch.ty, &batch.tz, &batch.ex, &batch.ey,
+                                   &batch.ez, &batch.absorb_r, &batch.absorb_g, &batch.absorb_b})
+    std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
+}
+
+/// Shades `samples`, at most ShadeBatch::kSize of them, groom by groom.
+void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, std::span<const VisibleSample> samples,
+                 ShadeBatch& batch, Vec3* color) {
+  std::array<SegmentRef, ShadeBatch::kSize> segments;
+  std::array<std::uint32_t, ShadeBatch::kSize> pending, left, taken;
+  std::size_t pending_count = samples.size();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    segments[i] = find_segment(g.scene, g.numbering, static_cast<std::uint32_t>(samples[i].key));
+    pending[i] = static_cast<std::uint32_t>(i);
   }
-  return sum;
+  while (pending_count > 0) {
+    const std::uint32_t groom = segments[pending[0]].groom;
+    std::size_t left_count = 0;
+    batch.count = 0;
+    for (std::size_t j = 0; j < pending_count; ++j) {
+      const std::uint32_t i = pending[j];
+      if (segments[i].groom != groom) {
+        left[left_count++] = i;
+        continue;
+      }
+      gather_lane(g, samples[i], segments[i], batch, batch.count);
+      taken[batch.count++] = i;
+    }
+    pad(batch);
+    evaluate(constants[groom], batch);
+    for (std::size_t j = 0; j < batch.count; ++j) color[taken[j]] = {batch.r[j], batch.g[j], batch.b[j]};
+    pending = left, pending_count = left_count;
+  }
 }
 
 }  // namespace
@@ -48,14 +103,14 @@ Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumberin
   Radiance radiance;
   radiance.index = std::move(list.index);
   radiance.color.resize(list.samples.size());
-  parallel_for(list.samples.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const VisibleSample& s = list.samples[i];
-      const Vec2 p = sample_positions[s.sample];
-      const Vec2 screen{static_cast<float>(s.pixel % static_cast<std::uint32_t>(view.width)) + p.x,
-                        static_cast<float>(s.pixel / static_cast<std::uint32_t>(view.width)) + p.y};
-      radiance.color[i] = shade_sample(scene, view, numbering, rig, screen, s.key);
-    }
+
+  const Gather gather{scene, view, numbering, sample_positions};
+  std::vector<ShadeConstants> constants;
+  for (const GroomInstance& groom : scene.grooms)
+    constants.push_back({groom.material, scene.settings.dual_scattering, light_constants(rig)});
+  parallel_for(list.samples.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
+    ShadeBatch batch;
+    shade_block(gather, constants, {list.samples.data() + begin, end - begin}, batch, radiance.color.data() + begin);
   });
   return radiance;
 }

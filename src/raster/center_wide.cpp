@@ -1,0 +1,173 @@
+// The center layer, a segment per lane.
+//
+// Two phases that a small buffer joins, because a hair is a fraction of a pixel wide: of the columns that a band crosses
+// one in five or ten has its pixel's center covered. The walk finds those and compresses them into the buffer; the
+// depth test then runs on full lanes, a gather of the high halves of the 64-bit keys, with every address known in time
+// to be prefetched. Only what passes goes on to the atomic minimum.
+#include "raster/fragments.h"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+
+#include "raster/keys.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/center_wide.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernel/wide-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelage {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using wide::Float;
+using wide::Mask;
+using Ints = hn::Vec<wide::IntTag>;
+using Uints = hn::Vec<wide::UintTag>;
+
+const wide::FloatTag kFloat{};
+const wide::IntTag kInt{};
+const wide::UintTag kUint{};
+
+/// Bit l of the result tells whether lane l, of `bits` at `depth` bits, may pass the depth test of its key now.
+std::uint64_t passing(const std::uint32_t* place, Uints depth_bits, Mask used, const PixelKey* keys) {
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR
+  HWY_ALIGN std::uint32_t now[hn::MaxLanes(wide::UintTag())];
+  for (std::size_t l = 0; l < hn::Lanes(kUint); ++l)
+    now[l] = static_cast<std::uint32_t>(__atomic_load_n(keys + place[l], __ATOMIC_RELAXED) >> 32);
+  const Uints current = hn::Load(kUint, now);
+#else
+  // Keys may change under the gather. A stale half is larger than the present one, and only lets more through.
+  const Ints index = hn::BitCast(kInt, hn::Add(hn::ShiftLeft<1>(hn::LoadU(kUint, place)), hn::Set(kUint, 1)));
+  const Uints current = hn::GatherIndex(kUint, reinterpret_cast<const std::uint32_t*>(keys), index);
+#endif
+  const auto behind = hn::Lt(current, depth_bits);
+  std::uint64_t bits = 0;
+  hn::StoreMaskBits(kUint, hn::AndNot(behind, hn::RebindMask(kUint, used.m)), reinterpret_cast<std::uint8_t*>(&bits));
+  return bits;
+}
+
+/// Depth test and atomic minimum of everything in the buffer, which is empty afterwards.
+void Flush(FragmentBuffer& f, PixelKey* keys) {
+  const std::size_t lanes = hn::Lanes(kUint), count = f.count;
+  constexpr std::size_t kAhead = 64;
+  std::fill(&f.place[count], &f.place[count] + FragmentBuffer::kPadding, 0u);
+  for (std::size_t i = 0; i < count && i < kAhead; ++i) hwy::Prefetch(keys + f.place[i]);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) hwy::Prefetch(keys + f.place[std::min(i + kAhead + l, count)]);
+    const Uints depth_bits = hn::BitCast(kUint, hn::LoadU(kFloat, &f.depth[i]));
+    const Mask used{hn::FirstN(kFloat, count - i)};
+    for (std::uint64_t bits = passing(&f.place[i], depth_bits, used, keys); bits != 0; bits &= bits - 1) {
+      const std::size_t l = i + static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+      atomic_min(keys[f.place[l]], pixel_key(f.depth[l], f.id[l]));
+    }
+  }
+  f.count = 0;
+}
+
+void append(FragmentBuffer& f, Mask m, Uints place, Float depth, Uints id) {
+  const auto mask = hn::RebindMask(kUint, m.m);
+  hn::StoreU(hn::Compress(place, mask), kUint, &f.place[f.count]);
+  hn::StoreU(hn::Compress(depth.v, m.m), kFloat, &f.depth[f.count]);
+  hn::StoreU(hn::Compress(id, mask), kUint, &f.id[f.count]);
+  f.count += hn::CountTrue(kUint, mask);
+}
+
+/// What the walk of one bunch of segments needs beside their bands.
+struct Lanes {
+  wide::RasterBand band;
+  Float column, last;        // current and last column; lanes with column > last are done
+  Float rows;                // of the minor axis
+  Uints column_step;         // places per column …
+  Uints row_step;            // … and per row
+  Uints id;
+};
+
+/// One column of each lane: appends the covered rows.
+template <bool kThin>
+HWY_INLINE void visit_column(const Lanes& w, Float column, FragmentBuffer& f) {
+  const wide::RasterBand& band = w.band;
+  const Float half_pixel(0.5f);
+  const Float u = column + half_pixel, s = u - band.u;
+  const Float center = wide::raster_band_center(band, s), half = wide::raster_band_half(band, s);
+  Float row = wide::raster_first_row(center, half, half_pixel);
+  if (!kThin) row = max(row, Float(0.0f));
+  Mask open = column <= w.last && wide::raster_row_covered(row, half_pixel, center, half) && row < w.rows;
+  if (kThin) open = open && row >= Float(0.0f);
+  while (wide::any(open)) {
+    const Mask covered = open && wide::raster_between_caps(band, u, row + half_pixel);
+    if (wide::any(covered)) {
+      const Uints place = hn::Add(hn::Mul(hn::BitCast(kUint, hn::ConvertTo(kInt, column.v)), w.column_step),
+                                  hn::Mul(hn::BitCast(kUint, hn::ConvertTo(kInt, row.v)), w.row_step));
+      append(f, covered, place, wide::raster_band_depth(band, s), w.id);
+    }
+    if (kThin) return;
+    row = row + Float(1.0f);
+    open = open && wide::raster_row_covered(row, half_pixel, center, half) && row < w.rows;
+  }
+}
+
+/// Segments j … j + lanes − 1 of the block; false where none of them can cover a pixel's center.
+bool load_segments(const ScreenBlock& block, std::size_t j, int width, int height, Lanes& w) {
+  const Float x = wide::load(&block.x[j]), y = wide::load(&block.y[j]);
+  const Float next_x = wide::load(&block.x[j + 1]), next_y = wide::load(&block.y[j + 1]);
+  w.id = hn::LoadU(kUint, &block.id[j]);
+  w.band = wide::raster_band({x, y}, {next_x, next_y}, wide::load(&block.radius[j]), wide::load(&block.radius[j + 1]),
+                             wide::load(&block.depth[j]), wide::load(&block.depth[j + 1]),
+                             {wide::load(&block.cap_x[j]), wide::load(&block.cap_y[j])},
+                             {wide::load(&block.cap_x[j + 1]), wide::load(&block.cap_y[j + 1])});
+  const Float w_pixels(static_cast<float>(width)), h_pixels(static_cast<float>(height));
+  const Float columns = select(w.band.x_major, w_pixels, h_pixels);
+  w.rows = select(w.band.x_major, h_pixels, w_pixels);
+  w.column = max(ceil(w.band.first - Float(0.5f)), Float(0.0f));
+  w.last = min(floor(w.band.last - Float(0.5f)), columns - Float(1.0f));
+  const auto x_major = hn::RebindMask(kUint, w.band.x_major.m);
+  const Uints one = hn::Set(kUint, 1), line = hn::Set(kUint, static_cast<std::uint32_t>(width));
+  w.column_step = hn::IfThenElse(x_major, one, line);
+  w.row_step = hn::IfThenElse(x_major, line, one);
+  const Mask none{hn::RebindMask(kFloat, hn::Eq(w.id, hn::Set(kUint, ScreenBlock::kNoSegment)))};
+  const Mask used{hn::FirstN(kFloat, block.count - 1 - j)};
+  const Mask drawn = used && !none && w.column <= w.last;
+  w.last = select(drawn, w.last, Float(-1.0f));
+  return wide::any(drawn);
+}
+
+void Center(const ScreenBlock& block, int width, int height, FragmentBuffer& f, PixelKey* keys) {
+  const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
+  Lanes w;
+  for (std::size_t j = 0; j + 1 < block.count; j += lanes) {
+    if (!load_segments(block, j, width, height, w)) continue;
+    const Float at_end = wide::raster_band_half(w.band, w.band.end_u - w.band.u);
+    const bool thin = !wide::any(max(w.band.half, at_end) >= Float(0.49f));
+    Float column = w.column;
+    do {
+      if (f.count + lanes > FragmentBuffer::kCapacity) Flush(f, keys);
+      if (thin) visit_column<true>(w, column, f);
+      else visit_column<false>(w, column, f);
+      column = column + Float(1.0f);
+    } while (wide::any(column <= w.last));
+  }
+  Flush(f, keys);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace pelage
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pelage {
+
+HWY_EXPORT(Center);
+
+void raster_center(const ScreenBlock& block, int width, int height, FragmentBuffer& fragments, PixelKey* keys) {
+  HWY_DYNAMIC_DISPATCH(Center)(block, width, height, fragments, keys);
+}
+
+}  // namespace pelage
+#endif

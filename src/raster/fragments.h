@@ -1,0 +1,25 @@
+// Fragments on their way from the walk over bands to the depth test: a few thousand at a time, per thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "frame/frame.h"
+
+namespace pelage {
+
+/// Covered places whose depth has not been tested yet. Walks append whole lanes, so there is room for one behind the end.
+struct FragmentBuffer {
+  static constexpr std::size_t kCapacity = 4096;
+  static constexpr std::size_t kPadding = 64;
+  std::size_t count = 0;
+  Buffer<std::uint32_t> place{kCapacity + kPadding};  ///< index into the layer: pixel, or pixel·samples + sample
+  Buffer<float> depth{kCapacity + kPadding};          ///< metres
+  Buffer<std::uint32_t> id{kCapacity + kPadding};     ///< segment
+};
+
+/// Walks the bands of `block`, many segments at a time, and enters what covers pixel centers into `keys`
+/// ([height·width], nearest wins). `fragments` is scratch of the calling thread.
+void raster_center(const ScreenBlock& block, int width, int height, FragmentBuffer& fragments, PixelKey* keys);
+
+}  // namespace pelage

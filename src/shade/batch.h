@@ -1,0 +1,64 @@
+// What one evaluation of shade needs, laid out for lanes.
+#pragma once
+
+#include <pelage/scene.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "frame/frame.h"
+
+namespace pelage {
+
+/// Evaluations of one groom, as structure of arrays. Lanes from `count` up to the next multiple of the lane count are
+/// evaluated too: they hold copies of valid values.
+struct ShadeBatch {
+  static constexpr std::size_t kSize = 256;
+  static constexpr std::size_t kPadding = 64;
+  using Lanes = std::array<float, kSize + kPadding>;
+  std::size_t count = 0;
+  alignas(64) Lanes px, py, pz;                 ///< position on the strand's axis, metres, world
+  alignas(64) Lanes tx, ty, tz;                 ///< tangent, unit length
+  alignas(64) Lanes ex, ey, ez;                 ///< direction to the eye, unit length
+  alignas(64) Lanes absorb_r, absorb_g, absorb_b;  ///< per fiber radius
+  alignas(64) Lanes r, g, b;                    ///< result: radiance, W/(m²·sr)
+};
+
+/// A map of a light, as plain numbers and pointers that outlive the evaluation.
+struct MapConstants {
+  float row[3][4];          ///< world to camera
+  float focal = 1, center_x = 0, center_y = 0, near_plane = 0;
+  bool perspective = false;
+  float last_x = 0, last_y = 0;     ///< width − 1, height − 1
+  std::int32_t width = 0, origin_width = 0;
+  const float* depth = nullptr;     ///< opacity: first depths of blocks; shadow: depths. Null: no map
+  const std::uint32_t* crossings = nullptr;
+  std::array<float, OpacityMap::kLayers> layer_end{};
+};
+
+/// A light, as plain numbers.
+struct LightConstants {
+  Light::Type type = Light::Type::kDirectional;
+  Vec3 position, to_light, intensity;
+  float cos_inner = 0, cos_outer = 0;
+  float spread2 = 0;        ///< radians², variance of its directions
+  bool wide = false;        ///< so spread that its azimuth is averaged over a half circle
+  bool only_in_view = false;
+  MapConstants opacity, shadow;
+};
+
+/// What all evaluations of a groom share.
+struct ShadeConstants {
+  HairMaterial material;
+  bool dual_scattering = true;
+  std::vector<LightConstants> lights;
+};
+
+/// Radians: a light of more spread than this counts as coming from a half circle of azimuths.
+inline constexpr float kWideSpread = 0.25f;
+
+std::vector<LightConstants> light_constants(const LightRig& rig);
+
+}  // namespace pelage

@@ -1,0 +1,200 @@
+// The evaluation of a batch of visible strand samples under all lights, written once for one lane and for many.
+//
+// Included inside a namespace that has Float, Int, Vec3, Mask, the kernels and the lane access of kernel/lanes*.h, with
+// PELAGE_LANES_FN defined. What differs between lights or grooms is uniform over the lanes and may branch; what differs
+// between lanes may not. No include guard, on purpose.
+
+// Camera-space place of a world-space point.
+PELAGE_LANES_FN Vec3 shade_to_camera(const MapConstants& m, Vec3 p) {
+  const auto row = [&](int i) { return p.x * Float(m.row[i][0]) + p.y * Float(m.row[i][1]) + p.z * Float(m.row[i][2]) + Float(m.row[i][3]); };
+  return Vec3(row(0), row(1), row(2));
+}
+
+// Upper left texel of the four around a place, their weights, and whether the place is on the map at all.
+struct ShadeFootprint {
+  Float x, y, right, lower;
+  Mask inside;
+};
+
+PELAGE_LANES_FN ShadeFootprint shade_footprint(const MapConstants& m, Vec3 c, float margin) {
+  const Float scale = m.perspective ? Float(m.focal) / max(c.z, Float(m.near_plane)) : Float(m.focal);
+  const Float x = Float(m.center_x) + scale * c.x - Float(0.5f), y = Float(m.center_y) + scale * c.y - Float(0.5f);
+  ShadeFootprint f;
+  f.inside = (c.z >= Float(m.near_plane)) && (x >= Float(margin)) && (y >= Float(margin)) &&
+             (x < Float(m.last_x - margin)) && (y < Float(m.last_y - margin));
+  const Float sx = v_clamp(x, Float(margin), Float(m.last_x - margin - 1)), sy = v_clamp(y, Float(margin), Float(m.last_y - margin - 1));
+  f.x = floor(sx), f.y = floor(sy);
+  f.right = v_clamp(x - f.x, Float(0.0f), Float(1.0f)), f.lower = v_clamp(y - f.y, Float(0.0f), Float(1.0f));
+  return f;
+}
+
+PELAGE_LANES_FN Float shade_texel_crossings(const MapConstants& m, Float x, Float y, Float z) {
+  const Float per_block(1.f / OpacityMap::kOriginBlock);
+  const Int block = to_int(floor(y * per_block)) * Int(m.origin_width) + to_int(floor(x * per_block));
+  const Float d = max(z - gather(m.depth, block), Float(0.0f));
+  Float layer(0.0f), begin(0.0f), end(m.layer_end[0]);
+  for (std::size_t i = 0; i + 1 < OpacityMap::kLayers; ++i) {
+    const Mask beyond = d > Float(m.layer_end[i]);
+    layer = layer + select(beyond, Float(1.0f), Float(0.0f));
+    begin = select(beyond, Float(m.layer_end[i]), begin);
+    end = select(beyond, Float(m.layer_end[i + 1]), end);
+  }
+  const Int slot = (to_int(y) * Int(m.width) + to_int(x)) * Int(OpacityMap::kLayers) + to_int(layer);
+  const Mask first = layer == Float(0.0f);
+  const Float after = to_float(gather(m.crossings, slot));
+  const Float before = to_float(gather(m.crossings, select(first, slot, slot - Int(1))));
+  return light_crossings(d, begin, end, select(first, Float(0.0f), before), after);
+}
+
+// Strands between the light and each place; see crossings_at().
+PELAGE_LANES_FN Float shade_crossings(const MapConstants& m, Vec3 p) {
+  if (m.crossings == nullptr) return Float(0.0f);
+  const Vec3 c = shade_to_camera(m, p);
+  const ShadeFootprint f = shade_footprint(m, c, 0);
+  const Float x1 = f.x + Float(1.0f), y1 = f.y + Float(1.0f), left = Float(1.0f) - f.right;
+  const Float top = shade_texel_crossings(m, f.x, f.y, c.z) * left + shade_texel_crossings(m, x1, f.y, c.z) * f.right;
+  const Float bottom = shade_texel_crossings(m, f.x, y1, c.z) * left + shade_texel_crossings(m, x1, y1, c.z) * f.right;
+  const Float n = top * (Float(1.0f) - f.lower) + bottom * f.lower;
+  return select(f.inside, n * Float(OpacityMap::kCrossingUnit), Float(0.0f));
+}
+
+// Share of the light that the meshes let pass; see mesh_visibility().
+PELAGE_LANES_FN Float shade_mesh_visibility(const MapConstants& m, Vec3 p) {
+  if (m.depth == nullptr) return Float(1.0f);
+  const Vec3 c = shade_to_camera(m, p);
+  const ShadeFootprint f = shade_footprint(m, c, 1);
+  const Float texel = (m.perspective ? c.z : Float(1.0f)) / Float(m.focal);
+  const Float bias = Float(kHairBias.metres) + Float(kHairBias.texels) * texel;
+  const Int corner = (to_int(f.y) - Int(1)) * Int(m.width) + to_int(f.x) - Int(1);
+  const auto lit = [&](int x, int y) {
+    return light_depth_test(c.z, gather(m.depth, corner + Int(y * m.width + x)), bias);
+  };
+  const auto row = [&](int y) { return lit(0, y) * (Float(1.0f) - f.right) + lit(1, y) + lit(2, y) + lit(3, y) * f.right; };
+  const Float sum = row(0) * (Float(1.0f) - f.lower) + row(1) + row(2) + row(3) * f.lower;
+  return select(f.inside, sum * Float(1.f / 9), Float(1.0f));
+}
+
+// Direction to a light and the irradiance that it would give; see illuminate().
+struct ShadeIllumination {
+  Vec3 to_light, irradiance;
+};
+
+PELAGE_LANES_FN ShadeIllumination shade_illuminate(const LightConstants& light, Vec3 p) {
+  if (light.type == Light::Type::kDirectional) return {splat(light.to_light), splat(light.intensity)};
+  const Vec3 to_light = splat(light.position) - p;
+  const Float d2 = max(dot(to_light, to_light), Float(1.0e-12f));
+  Float share = Float(1.0f) / d2;
+  ShadeIllumination i;
+  i.to_light = to_light * (Float(1.0f) / sqrt(d2));
+  if (light.type == Light::Type::kSpot)
+    share = share * light_spot_share(dot(i.to_light, splat(light.to_light)), Float(light.cos_inner), Float(light.cos_outer));
+  if (light.only_in_view) {
+    const Vec3 c = shade_to_camera(light.opacity, p);
+    share = select(max(abs(c.x), abs(c.y)) <= c.z, share, Float(0.0f));
+  }
+  i.irradiance = splat(light.intensity) * share;
+  return i;
+}
+
+// A strand where it is seen, and everything about it that does not depend on the light.
+struct ShadePlace {
+  Vec3 position, tangent;
+  Vec3 across_o;        // direction to the eye in the normal plane, unit length
+  ScatterFiber fiber;
+  ScatterLobes lobes;
+  ScatterAverages averages;
+  ScatterBack back;
+  Vec3 tuft_color;      // of Kajiya-Kay
+};
+
+PELAGE_LANES_FN ShadePlace shade_place(const HairMaterial& material, const ShadeBatch& batch, std::size_t i) {
+  const auto vec = [i](const ShadeBatch::Lanes& x, const ShadeBatch::Lanes& y, const ShadeBatch::Lanes& z) {
+    return Vec3(load(x.data() + i), load(y.data() + i), load(z.data() + i));
+  };
+  ShadePlace s;
+  s.position = vec(batch.px, batch.py, batch.pz);
+  s.tangent = vec(batch.tx, batch.ty, batch.tz);
+  const Vec3 to_eye = vec(batch.ex, batch.ey, batch.ez);
+  const Vec3 absorption = vec(batch.absorb_r, batch.absorb_g, batch.absorb_b);
+  const Float sin_o = v_clamp(dot(to_eye, s.tangent), Float(-1.0f), Float(1.0f));
+  s.across_o = v_normalize(to_eye - s.tangent * sin_o);
+  s.fiber = scatter_fiber(Float(material.eta), Float(material.beta_longitudinal), Float(material.beta_azimuthal),
+                          Float(material.cuticle_tilt), Float(material.specular_gain), absorption);
+  const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
+  s.lobes = material.model == HairMaterial::Model::kZhu ? scatter_prepare_zhu(s.fiber, sin_o, cos_o)
+                                                        : scatter_prepare_marschner(s.fiber, sin_o, cos_o);
+  s.averages = scatter_averages(s.lobes);
+  s.back = scatter_back(s.averages, s.lobes);
+  s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
+  return s;
+}
+
+// Directions of a light about the fiber.
+struct ShadeAngles {
+  Float sin_i, cos_i, cos_phi;
+};
+
+PELAGE_LANES_FN ShadeAngles shade_angles(const ShadePlace& s, Vec3 to_light) {
+  ShadeAngles a;
+  a.sin_i = v_clamp(dot(to_light, s.tangent), Float(-1.0f), Float(1.0f));
+  a.cos_i = sqrt(max(Float(1.0f) - a.sin_i * a.sin_i, Float(0.0f)));
+  a.cos_phi = v_clamp(dot(v_normalize(to_light - s.tangent * a.sin_i), s.across_o), Float(-1.0f), Float(1.0f));
+  return a;
+}
+
+PELAGE_LANES_FN ScatterLobes shade_widened(ScatterLobes l, Float variance) {
+  l.r = scatter_cone_widened(l.r, variance);
+  l.tt = scatter_cone_widened(l.tt, variance);
+  l.trt = scatter_cone_widened(l.trt, variance);
+  return l;
+}
+
+// f·cos of the fiber itself under a light of some spread.
+PELAGE_LANES_FN Vec3 shade_single(HairMaterial::Model model, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
+  const Float spread(light.spread2);
+  const ScatterLobes lobes = light.spread2 > 0 ? shade_widened(s.lobes, spread) : s.lobes;
+  if (model == HairMaterial::Model::kKajiyaKay) return scatter_kajiya_kay(lobes, s.tuft_color, a.sin_i, a.cos_i);
+  if (model == HairMaterial::Model::kZhu)
+    return light.wide ? scatter_dual_forward_zhu(s.lobes, spread, a.sin_i, a.cos_i, a.cos_phi)
+                      : scatter_zhu(lobes, a.sin_i, a.cos_i, a.cos_phi);
+  return light.wide ? scatter_dual_forward_marschner(s.lobes, spread, a.sin_i, a.cos_i, a.cos_phi)
+                    : scatter_marschner(lobes, a.sin_i, a.cos_i, a.cos_phi);
+}
+
+// Light that other fibers scattered forward to this one, on it and on those behind it: Zinke 2008, section 4.
+PELAGE_LANES_FN Vec3 shade_forwarded(HairMaterial::Model model, const ShadePlace& s, Float variance, ShadeAngles a) {
+  const Vec3 forward = model == HairMaterial::Model::kZhu
+                           ? scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi)
+                           : scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+  return forward + scatter_dual_local(s.back, variance, a.sin_i, a.cos_i, a.cos_phi);
+}
+
+// Share of light that n fibers let pass to a Kajiya-Kay fiber: half of what its diffuse lobe scatters goes on.
+PELAGE_LANES_FN Vec3 shade_kajiya_kay_transmittance(const ShadePlace& s, Float n) {
+  return v_exp((s.tuft_color * Float(0.5f) - v_splat(Float(1.0f))) * n);
+}
+
+PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light) {
+  const ShadeIllumination i = shade_illuminate(light, s.position);
+  const ShadeAngles a = shade_angles(s, i.to_light);
+  const Float n = shade_crossings(light.opacity, s.position);
+  const Vec3 arriving = i.irradiance * shade_mesh_visibility(light.shadow, s.position);
+  const Vec3 single = shade_single(k.material.model, s, light, a);
+  if (k.material.model == HairMaterial::Model::kKajiyaKay) return arriving * single * shade_kajiya_kay_transmittance(s, n);
+  const Vec3 direct = single * scatter_dual_direct(n);
+  if (!k.dual_scattering) return arriving * direct;
+  const Float spread(light.spread2);
+  const Vec3 local = scatter_dual_local(s.back, spread, a.sin_i, a.cos_i, a.cos_phi) * scatter_dual_direct(n);
+  const Vec3 forwarded = shade_forwarded(k.material.model, s, scatter_dual_variance(n, s.averages.v_f) + spread, a);
+  return arriving * (direct + local + forwarded * scatter_dual_transmittance(n, s.averages.a_f));
+}
+
+// Fills r, g, b of the batch.
+PELAGE_LANES_FN void shade_evaluate(const ShadeConstants& k, ShadeBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; i += static_cast<std::size_t>(lanes())) {
+    const ShadePlace s = shade_place(k.material, batch, i);
+    Vec3 sum(Float(0.0f), Float(0.0f), Float(0.0f));
+    for (const LightConstants& light : k.lights) sum = sum + shade_under(k, s, light);
+    store(sum.x, batch.r.data() + i), store(sum.y, batch.g.data() + i), store(sum.z, batch.b.data() + i);
+  }
+}
