@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "groom/mannequin.h"
-#include "groom/scalp.h"
 #include "groom/strands.h"
 
 namespace pelage {
@@ -22,9 +21,9 @@ void check(const GrowSettings& s) {
   check_range("points", s.points, 4, 1024);
   check_range("strands × points", static_cast<double>(s.strands) * s.points, 4, 4294967295.0);
   check_range("length", static_cast<double>(s.length), 1e-4, 10);
-  check_range("length_variation", static_cast<double>(s.length_variation), 0, 1);
+  check_range("length_variation", static_cast<double>(s.length_variation), 0, 0.5);
   check_range("width", static_cast<double>(s.width), 0, 0.1);
-  check_range("width_variation", static_cast<double>(s.width_variation), 0, 1);
+  check_range("width_variation", static_cast<double>(s.width_variation), 0, 0.5);
   check_range("taper", static_cast<double>(s.taper), 0, 1);
   check_range("curl_radius", static_cast<double>(s.curl_radius), 0, 1);
   check_range("curl_pitch", static_cast<double>(s.curl_pitch), 1e-4, 10);
@@ -33,6 +32,9 @@ void check(const GrowSettings& s) {
   check_range("frizz", static_cast<double>(s.frizz), 0, 1);
   check_range("flyaways", static_cast<double>(s.flyaways), 0, 1);
   check_range("gravity", static_cast<double>(s.gravity), 0, 1);
+  check_range("volume", static_cast<double>(s.volume), 0, 0.5);
+  check_range("parting", static_cast<double>(s.parting), -0.05, 0.05);
+  check_range("undercoat", static_cast<double>(s.undercoat), 0, 1);
 }
 
 }  // namespace
@@ -50,8 +52,7 @@ StrandSet grow(const GrowSettings& settings, const TriangleMesh& surface, const 
   const std::size_t guide_count = static_cast<std::size_t>(std::min(wanted, settings.strands));
   const float longest = settings.length * (1 + 2.5f * settings.length_variation);
   const GuideSet guides = grow_guides(settings, ground, guide_count, longest);
-  const std::vector<Root> roots = scatter_roots(surface, static_cast<std::size_t>(settings.strands), settings.seed,
-                                                ground.scalp ? DensityField(scalp_density) : DensityField());
+  const std::vector<Root> roots = scatter_roots(surface, static_cast<std::size_t>(settings.strands), settings.seed, ground.density());
   return fill_strands(settings, ground, guides, roots, progress);
 }
 

@@ -11,37 +11,40 @@ namespace {
 float skull(Vec3 q) {
   float d = sd_ellipsoid(q - Vec3(0, 0.030f, -0.012f), {0.0765f, 0.088f, 0.099f});
   d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.028f, 0.024f), {0.060f, 0.080f, 0.063f}), 0.03f);
-  d = smooth_union(d, sd_capsule(q, {0.048f, -0.045f, 0.004f}, {0.012f, -0.098f, 0.062f}, 0.017f, 0.014f), 0.03f);
-  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.098f, 0.070f), {0.021f, 0.016f, 0.017f}), 0.02f);
-  return smooth_union(d, sd_ellipsoid(q - Vec3(0.042f, -0.022f, 0.060f), {0.022f, 0.016f, 0.020f}), 0.025f);
+  d = smooth_union(d, sd_capsule(q, {0.050f, -0.045f, 0.004f}, {0.012f, -0.099f, 0.062f}, 0.016f, 0.013f), 0.03f);  // jaw
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.099f, 0.072f), {0.018f, 0.014f, 0.016f}), 0.02f);            // chin
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0.030f, -0.052f, 0.055f), {0.026f, 0.032f, 0.026f}), 0.020f);     // cheek
+  return smooth_union(d, sd_ellipsoid(q - Vec3(0.043f, -0.020f, 0.060f), {0.020f, 0.013f, 0.018f}), 0.03f);   // cheekbone
 }
 
 float eyes(float d, Vec3 q) {
-  d = smooth_union(d, sd_capsule(q, {0.008f, 0.019f, 0.0835f}, {0.048f, 0.018f, 0.064f}, 0.009f, 0.008f), 0.016f);
-  d = smooth_difference(d, sd_ellipsoid(q - Vec3(0.032f, 0.002f, 0.093f), {0.021f, 0.011f, 0.015f}), 0.014f);
-  const float lid = sd_ellipsoid(q - Vec3(0.0315f, 0.000f, 0.0690f), {0.0155f, 0.0125f, 0.0145f});
-  d = smooth_union(d, lid, 0.004f);
-  return smooth_difference(d, sd_capsule(q, {0.019f, -0.0045f, 0.0835f}, {0.045f, -0.0045f, 0.0785f}, 0.0012f, 0.0012f),
-                           0.003f);
+  d = smooth_union(d, sd_capsule(q, {0.010f, 0.0195f, 0.0830f}, {0.050f, 0.018f, 0.060f}, 0.007f, 0.006f), 0.024f);
+  d = smooth_difference(d, sd_ellipsoid(q - Vec3(0.032f, 0.003f, 0.0935f), {0.022f, 0.0115f, 0.015f}), 0.016f);
+  const float upper_lid = sd_ellipsoid(q - Vec3(0.0315f, 0.0020f, 0.0695f), {0.0175f, 0.0125f, 0.0155f});
+  const float lower_lid = sd_ellipsoid(q - Vec3(0.0315f, -0.0065f, 0.0675f), {0.0165f, 0.0105f, 0.0125f});
+  d = smooth_union(d, lower_lid, 0.005f);
+  d = smooth_union(d, upper_lid, 0.0025f);
+  d = smooth_difference(d, sd_capsule(q, {0.0185f, -0.0035f, 0.0800f}, {0.0310f, -0.0070f, 0.0850f}, 0.0012f, 0.0012f), 0.004f);
+  return smooth_difference(d, sd_capsule(q, {0.0310f, -0.0070f, 0.0850f}, {0.0450f, -0.0035f, 0.0780f}, 0.0012f, 0.0012f), 0.004f);
 }
 
 float nose(float d, Vec3 q) {
-  float n = sd_capsule(q, {0, 0.012f, 0.0865f}, {0, -0.032f, 0.1085f}, 0.0065f, 0.0085f);
-  n = smooth_union(n, sd_ellipsoid(q - Vec3(0, -0.035f, 0.1085f), {0.0095f, 0.0085f, 0.0095f}), 0.008f);
-  n = smooth_union(n, sd_ellipsoid(q - Vec3(0.0115f, -0.039f, 0.0975f), {0.0070f, 0.0070f, 0.0095f}), 0.007f);
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.026f, 0.080f), {0.016f, 0.028f, 0.018f}), 0.012f);
+  float n = sd_capsule(q, {0, 0.014f, 0.0855f}, {0, -0.030f, 0.1065f}, 0.0060f, 0.0080f);
+  n = smooth_union(n, sd_ellipsoid(q - Vec3(0, -0.034f, 0.1070f), {0.0095f, 0.0085f, 0.0090f}), 0.008f);
+  n = smooth_union(n, sd_ellipsoid(q - Vec3(0.0115f, -0.038f, 0.0965f), {0.0065f, 0.0070f, 0.0100f}), 0.007f);
   d = smooth_union(d, n, 0.010f);
-  return smooth_difference(d, sd_ellipsoid(q - Vec3(0.0065f, -0.0455f, 0.1030f), {0.0028f, 0.0032f, 0.0045f}), 0.004f);
+  return smooth_difference(d, sd_ellipsoid(q - Vec3(0.0068f, -0.0465f, 0.1020f), {0.0030f, 0.0034f, 0.0050f}), 0.005f);
 }
 
 float mouth(float d, Vec3 q) {
-  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.068f, 0.068f), {0.032f, 0.026f, 0.022f}), 0.02f);
-  const float upper = sd_capsule(q, {0.005f, -0.0640f, 0.0905f}, {0.021f, -0.0685f, 0.0800f}, 0.0050f, 0.0022f);
-  const float lower = sd_capsule(q, {0.003f, -0.0755f, 0.0890f}, {0.019f, -0.0705f, 0.0805f}, 0.0058f, 0.0022f);
-  d = smooth_union(d, upper, 0.005f);
-  d = smooth_union(d, lower, 0.005f);
-  d = smooth_difference(d, sd_capsule(q, {0, -0.0695f, 0.0970f}, {0.025f, -0.0697f, 0.0825f}, 0.0013f, 0.0010f), 0.0035f);
-  d = smooth_difference(d, sd_capsule(q, {0, -0.052f, 0.0960f}, {0, -0.059f, 0.0975f}, 0.0022f, 0.0022f), 0.006f);
-  return smooth_difference(d, sd_ellipsoid(q - Vec3(0, -0.0855f, 0.0925f), {0.016f, 0.0042f, 0.006f}), 0.010f);
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.068f, 0.0675f), {0.032f, 0.026f, 0.022f}), 0.016f);
+  const float upper = sd_capsule(q, {0.0040f, -0.0645f, 0.0928f}, {0.0230f, -0.0705f, 0.0835f}, 0.0048f, 0.0022f);
+  const float lower = sd_capsule(q, {0.0000f, -0.0755f, 0.0920f}, {0.0210f, -0.0720f, 0.0832f}, 0.0056f, 0.0022f);
+  d = smooth_union(d, lower, 0.006f);
+  d = smooth_union(d, upper, 0.003f);
+  d = smooth_difference(d, sd_capsule(q, {0, -0.0500f, 0.1000f}, {0, -0.0580f, 0.1010f}, 0.0024f, 0.0024f), 0.010f);
+  return smooth_difference(d, sd_ellipsoid(q - Vec3(0, -0.0870f, 0.0975f), {0.018f, 0.0045f, 0.006f}), 0.012f);
 }
 
 float ear(float d, Vec3 q) {
@@ -62,7 +65,7 @@ float bust(Vec3 q) {
   d = smooth_union(d, sd_capsule(q, {0.01f, -0.178f, -0.042f}, {0.145f, -0.222f, -0.035f}, 0.032f, 0.042f), 0.05f);
   d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.270f, -0.025f), {0.165f, 0.085f, 0.085f}), 0.05f);
   d = smooth_union(d, sd_capsule(q, {0.018f, -0.200f, 0.036f}, {0.13f, -0.196f, 0.000f}, 0.007f, 0.006f), 0.018f);
-  return smooth_intersection(d, sd_ellipsoid(q - Vec3(0, -0.140f, -0.03f), {0.200f, 0.135f, 0.115f}), 0.012f);
+  return smooth_intersection(d, sd_ellipsoid(q - Vec3(0, -0.140f, -0.03f), {0.200f, 0.145f, 0.115f}), 0.03f);
 }
 
 }  // namespace

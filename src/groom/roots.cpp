@@ -106,4 +106,10 @@ std::vector<Root> scatter_roots(const TriangleMesh& mesh, std::size_t count, std
   return roots;
 }
 
+float typical_spacing(const std::vector<Root>& roots, std::size_t count) {
+  Bounds box;
+  for (const Root& root : roots) box.extend(root.position);
+  return std::max(length(box.extent()) / std::sqrt(static_cast<float>(count) + 1), 1e-6f);
+}
+
 }  // namespace pelage::groom

@@ -28,4 +28,7 @@ using DensityField = std::function<float(Vec3 position)>;
 std::vector<Root> scatter_roots(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed,
                                 const DensityField& density = {});
 
+/// About the distance between neighbours among the first `count` of `roots`, for sizing a PointGrid; > 0.
+float typical_spacing(const std::vector<Root>& roots, std::size_t count);
+
 }  // namespace pelage::groom

@@ -26,7 +26,8 @@ float hairline_height(float azimuth) {
   return std::end(kHairline)[-1].height;
 }
 
-constexpr Vec3 kWhorl{-0.012f, 0.104f, -0.058f};
+constexpr Vec3 kWhorl{-0.010f, 0, -0.050f};   // end of the parting at the crown, from above
+constexpr float kPartingFront = 0.140f;       // z of its other end, beyond the hairline, so that nothing fans out there
 
 }  // namespace
 
@@ -41,14 +42,22 @@ float scalp_density(Vec3 p) {
   return smoothstep(-0.001f, 0.009f, hairline_distance(p));
 }
 
-Vec3 parting_flow(Vec3 p, Vec3 normal, const Parting& parting) {
-  const float side = std::tanh((p.x - parting.x) * parting.sharpness);
-  const Vec3 falls(side, -0.5f, -0.42f);
-  const Vec3 out = p - kWhorl;
-  const Vec3 swirl = cross(normal, out) * 0.5f;
-  const Vec3 radial = normalize(Vec3(out.x, 0.6f * out.y, out.z) + swirl);
-  const float front = smoothstep(kWhorl.z - 0.01f, kWhorl.z + 0.045f, p.z);
-  const Vec3 flow = radial * (1 - front) + falls * front;
+Vec3 parting_flow(Vec3 p, Vec3 normal, float parting_x) {
+  // Seen from above: away from the nearest place of the parting, sideways along it and like a fan around its end, the
+  // whorl. Downward where the skin is steep.
+  const Vec3 front(parting_x, 0, kPartingFront), whorl(kWhorl.x + 0.5f * parting_x, 0, kWhorl.z);
+  const Vec3 flat(p.x, 0, p.z), line = whorl - front;
+  const float t = saturate(dot(flat - front, line) / dot(line, line));
+  const Vec3 away = normalize(flat - (front + line * t));
+  const float swirl = 0.5f * smoothstep(0.7f, 1.f, t) * smoothstep(0.07f, 0.03f, length(flat - whorl));
+  const Vec3 flow = away + cross(normal, away) * swirl + Vec3(0, -0.8f, -0.8f * (1 - t));
+  return flow - normal * dot(flow, normal);
+}
+
+Vec3 whorl_flow(Vec3 p, Vec3 normal) {
+  const Vec3 out = normalize(Vec3(p.x - kWhorl.x, 0, p.z - kWhorl.z));
+  const float swirl = mix(1.2f, 0.2f, smoothstep(0.f, 0.06f, length(Vec3(p.x - kWhorl.x, 0, p.z - kWhorl.z))));
+  const Vec3 flow = out + cross(normal, out) * swirl + Vec3(0, -0.8f, 0);
   return flow - normal * dot(flow, normal);
 }
 

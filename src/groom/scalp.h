@@ -3,22 +3,19 @@
 
 #include <pelage/vec.h>
 
-#include <cstdint>
-
 namespace pelage::groom {
 
-/// Signed distance to the hairline along the skin, roughly, metres; positive on the hairy side. Slightly irregular.
+/// Height above the hairline, metres; positive on the hairy side. Slightly irregular.
 float hairline_distance(Vec3 p);
 
 /// Density of roots, 0…1: full on the scalp, thinning over the last millimetres before the hairline.
 float scalp_density(Vec3 p);
 
-struct Parting {
-  float x = 0.016f;           ///< metres, where the parting runs; right of the middle as the head sees it when negative
-  float sharpness = 200;      ///< 1/metre
-};
-/// Tangential combing direction of a haircut that falls from a parting and a crown whorl. Not normalised, never zero on
-/// the scalp.
-Vec3 parting_flow(Vec3 p, Vec3 normal, const Parting& parting);
+/// Tangential combing direction of hair that falls from a parting, `parting_x` metres left of the head's middle, to a
+/// whorl at the crown. Not normalised.
+Vec3 parting_flow(Vec3 p, Vec3 normal, float parting_x);
+
+/// Tangential direction in which uncombed short hair grows: out of the whorl in a spiral, forward, down and back.
+Vec3 whorl_flow(Vec3 p, Vec3 normal);
 
 }  // namespace pelage::groom

@@ -10,13 +10,14 @@
 namespace pelage::groom {
 
 inline float saturate(float x) { return std::clamp(x, 0.f, 1.f); }
+inline float square(float x) { return x * x; }
 inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 inline float smoothstep(float low, float high, float x) {
   const float t = saturate((x - low) / (high - low));
   return t * t * (3 - 2 * t);
 }
 
-/// Axis-aligned ellipsoid around the origin. With f = |p/r|, d = f·(f − 1)/|∇f²|/2·… reduces to f(f − 1)/|p/r²|.
+/// Axis-aligned ellipsoid around the origin: with f = |p/r|, the distance to first order is (f − 1)/|∇f| = f(f − 1)/|p/r²|.
 inline float sd_ellipsoid(Vec3 p, Vec3 radii) {
   const Vec3 scaled = p / radii;
   const float f = length(scaled), gradient = length(scaled / radii);

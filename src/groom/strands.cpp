@@ -4,177 +4,243 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "groom/collide.h"
+#include "groom/hierarchy.h"
 #include "groom/noise.h"
-#include "groom/point_grid.h"
-#include "groom/sdf.h"
+#include "groom/scalp.h"
 
 namespace pelage::groom {
 namespace {
 
 constexpr float kTwoPi = 6.28318531f;
 constexpr std::uint32_t kLockStream = 0x6c6f636bu, kStrandStream = 0x7374726eu;
-constexpr int kBlend = 3;  // guides that shape a strand near its root
+constexpr int kTuftSize = 14;
+constexpr float kWoolLength = 0.55f, kWoolWidth = 0.6f;  // of the guard hairs'
+
+/// What tells the styles' strands apart beyond the public settings.
+struct StrandStyle {
+  float ellipticity;   ///< of the curl's cross-section: 1 helix, 0 flat wave
+  float phase_spread;  ///< radians, standard deviation of the curl's phase within a lock
+  float lock_share;    ///< share of the length's variance that a lock has in common
+  float curl_start;    ///< share of the strand over which the curl grows to its radius
+  float fade;          ///< metres above the hairline over which hair reaches its length; 0 none
+};
+
+StrandStyle style_of(HairStyle style) {
+  switch (style) {
+    case HairStyle::kStraight: return {0, 0, 0.5f, 0.2f, 0};
+    case HairStyle::kWavy: return {0.35f, 0.45f, 0.5f, 0.25f, 0};
+    case HairStyle::kCurly: return {1, 0.55f, 0.5f, 0.2f, 0};
+    case HairStyle::kAfro: return {1, 2.5f, 0.15f, 0.1f, 0.035f};
+    case HairStyle::kPonytail: return {0.4f, 0.5f, 0.5f, 0.3f, 0};
+    case HairStyle::kCoat: return {0.5f, 1.5f, 0.3f, 0.1f, 0.03f};
+  }
+  return {};
+}
 
 /// What the strands of one guide have in common.
 struct Lock {
-  float phase, radius, pitch, handedness, length, tightness;
+  float phase, radius, pitch, handedness;  ///< of the curl
+  float length;                            ///< standard normal
+  float tightness, start;                  ///< of the gathering, and the share of the strand at which it begins
 };
 
-struct Neighbors {
-  std::uint32_t guide[kBlend];
-  float weight[kBlend];
-  int count;
+/// A sine sampled at equal steps without calling sin(): (cosine, sine) turned by a fixed angle each time.
+struct Oscillator {
+  float c, s, step_c, step_s;
+  Oscillator() = default;
+  Oscillator(float phase, float step) : c(std::cos(phase)), s(std::sin(phase)), step_c(std::cos(step)), step_s(std::sin(step)) {}
+  float next() {
+    const float value = s, turned = c * step_c - s * step_s;
+    s = s * step_c + c * step_s, c = turned;
+    return value;
+  }
 };
 
-float square(float x) { return x * x; }
+/// Smooth noise along one strand: a slow and a fast sine per axis.
+class Frizz {
+ public:
+  Frizz(Rng& rng, float step) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      slow_[axis] = Oscillator(kTwoPi * rng.uniform(), kTwoPi * mix(9.f, 24.f, rng.uniform()) * step);
+      fast_[axis] = Oscillator(kTwoPi * rng.uniform(), kTwoPi * mix(45.f, 110.f, rng.uniform()) * step);
+    }
+  }
+  Vec3 next() {
+    const auto axis = [this](std::size_t i) { return slow_[i].next() + 0.3f * fast_[i].next(); };
+    const float x = axis(0), y = axis(1);
+    return {x, y, axis(2)};
+  }
+
+ private:
+  std::array<Oscillator, 3> slow_, fast_;
+};
+
+/// The numbers drawn for one strand.
+struct Traits {
+  float length, width;       ///< metres
+  float tightness;           ///< of its lock, and for a stray none
+  float phase, radius;       ///< of the curl
+  float frizz;               ///< metres, amplitude at the tip
+  float stray;               ///< metres that the tip stands off; 0 for hair that stays in its lock
+  HairGroup group;
+};
 
 class StrandFiller {
  public:
   StrandFiller(const GrowSettings& settings, const Ground& ground, const GuideSet& guides, const std::vector<Root>& roots)
-      : s_(settings), ground_(ground), guides_(guides), roots_(roots) {
+      : s_(settings), style_(style_of(settings.style)), ground_(ground), guides_(guides), roots_(roots),
+        members_(find_memberships(guides, roots, kTuftSize)) {
     locks_.reserve(guides.count());
     for (std::size_t g = 0; g < guides.count(); ++g) locks_.push_back(make_lock(static_cast<std::uint32_t>(g)));
-    find_neighbors();
-    sort_by_guide();
   }
 
-  const std::vector<std::uint32_t>& order() const { return order_; }
-  std::uint32_t guide_of(std::uint32_t root) const { return neighbors_[root].guide[0]; }
+  const std::vector<Membership>& members() const { return members_; }
 
-  /// Writes the strand of `root`: `points` places and widths.
-  void fill(std::uint32_t root, std::size_t points, Vec3* position, float* width) const;
+  /// Writes the points and widths of the strand at `root`; returns its group.
+  HairGroup fill(std::uint32_t root, std::size_t points, Vec3* position, float* width) const;
 
  private:
-  Lock make_lock(std::uint32_t g) const {
-    Rng rng(s_.seed, g, kLockStream);
-    Lock lock;
-    lock.phase = kTwoPi * rng.uniform();
-    lock.radius = s_.curl_radius * mix(0.7f, 1.3f, rng.uniform());
-    lock.pitch = s_.curl_pitch * mix(0.75f, 1.3f, rng.uniform());
-    lock.handedness = rng.uniform() < 0.5f ? -1.f : 1.f;
-    lock.length = rng.normal();
-    lock.tightness = saturate(s_.clump_tightness * mix(0.7f, 1.2f, rng.uniform()));
-    return lock;
-  }
-  void find_neighbors();
-  void sort_by_guide();
-  Vec3 on_guide(std::uint32_t g, Vec3 root, float s) const;
+  Lock make_lock(std::uint32_t g) const;
+  Traits draw_traits(std::uint32_t root, Rng& rng) const;
+  float draw_length(const Lock& lock, Vec3 root, Rng& rng) const;
+  Vec3 offset_from(std::uint32_t g, Vec3 root) const;
+  Vec3 follow(std::uint32_t g, Vec3 offset, float s) const;
+  Vec3 curl(std::uint32_t g, float s, float angle, float radius) const;
+  float tie_squeeze(std::uint32_t g, float s) const;
 
   const GrowSettings& s_;
+  const StrandStyle style_;
   const Ground& ground_;
   const GuideSet& guides_;
   const std::vector<Root>& roots_;
+  const std::vector<Membership> members_;
   std::vector<Lock> locks_;
-  std::vector<Neighbors> neighbors_;
-  std::vector<std::uint32_t> order_;
 };
 
-void StrandFiller::find_neighbors() {
-  Bounds box;
-  for (const Root& r : guides_.roots) box.extend(r.position);
-  PointGrid grid(std::max(length(box.extent()) / std::sqrt(static_cast<float>(guides_.count()) + 1), 1e-6f), guides_.count());
-  for (const Root& r : guides_.roots) grid.insert(r.position);
-  const int wanted = static_cast<int>(std::min<std::size_t>(kBlend, guides_.count()));
-  neighbors_.resize(roots_.size());
-  parallel_for(roots_.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      float d2[kBlend];
-      Neighbors& n = neighbors_[i];
-      n.count = grid.nearest(roots_[i].position, wanted, n.guide, d2);
-      const std::size_t middle = static_cast<std::size_t>(guides_.points) / 4, stride = static_cast<std::size_t>(guides_.points);
-      const auto heading = [&](std::uint32_t g) { return normalize(guides_.position[g * stride + middle] - guides_.roots[g].position); };
-      float sum = 0;
-      for (int k = 0; k < n.count; ++k) {
-        // Guides beyond the parting head elsewhere and must not drag the strand across.
-        const float agree = smoothstep(0.5f, 0.9f, dot(heading(n.guide[0]), heading(n.guide[k])));
-        n.weight[k] = (k == 0 ? 1 : agree) / (d2[k] + 1e-8f);
-        sum += n.weight[k];
-      }
-      for (int k = 0; k < n.count; ++k) n.weight[k] /= sum;
-    }
-  });
+Lock StrandFiller::make_lock(std::uint32_t g) const {
+  Rng rng(s_.seed, g, kLockStream);
+  Lock lock;
+  // Waves of neighbouring locks run in step, ringlets do not.
+  const float shared = kTwoPi * 1.5f * noise3(guides_.roots[g].position * 14.f, 51u);
+  lock.phase = s_.style == HairStyle::kWavy ? shared + 1.2f * rng.uniform() : kTwoPi * rng.uniform();
+  lock.radius = s_.curl_radius * mix(0.55f, 1.45f, rng.uniform());
+  lock.pitch = s_.curl_pitch * mix(0.75f, 1.3f, rng.uniform());
+  lock.handedness = rng.uniform() < 0.5f ? -1.f : 1.f;
+  lock.length = rng.normal();
+  lock.tightness = saturate(s_.clump_tightness * mix(0.6f, 1.25f, rng.uniform()));
+  lock.start = mix(0.02f, 0.3f, rng.uniform());
+  return lock;
 }
 
-void StrandFiller::sort_by_guide() {
-  std::vector<std::uint32_t> start(guides_.count() + 1, 0);
-  for (const Neighbors& n : neighbors_) ++start[n.guide[0] + 1];
-  for (std::size_t g = 0; g < guides_.count(); ++g) start[g + 1] += start[g];
-  order_.resize(roots_.size());
-  for (std::uint32_t i = 0; i < roots_.size(); ++i) order_[start[neighbors_[i].guide[0]]++] = i;
+float StrandFiller::draw_length(const Lock& lock, Vec3 root, Rng& rng) const {
+  const float own = rng.normal();
+  const float deviation = std::sqrt(style_.lock_share) * lock.length + std::sqrt(1 - style_.lock_share) * own;
+  const float length = s_.length * std::max(0.05f, 1 + s_.length_variation * std::clamp(deviation, -2.5f, 2.5f));
+  if (!ground_.scalp || style_.fade <= 0) return length;
+  return length * mix(0.45f, 1.f, smoothstep(0.f, style_.fade, hairline_distance(root)));
 }
 
-/// Where the strand rooted at `root` is after arc length `s` if it follows guide `g` at its own offset.
-Vec3 StrandFiller::on_guide(std::uint32_t g, Vec3 offset, float s) const {
-  const float x = std::min(s / guides_.step, static_cast<float>(guides_.points - 1) - 1e-3f);
+Traits StrandFiller::draw_traits(std::uint32_t root, Rng& rng) const {
+  const Lock& lock = locks_[members_[root].guide[0]];
+  Traits t;
+  const bool stray = rng.uniform() < s_.flyaways;
+  const bool wool = s_.style == HairStyle::kCoat && rng.uniform() < s_.undercoat;
+  t.group = stray ? HairGroup::kFlyaway : wool ? HairGroup::kWool : HairGroup::kScalp;
+  if (!stray && guides_.tie[members_[root].guide[0]] > 0) t.group = HairGroup::kTail;
+  t.length = draw_length(lock, roots_[root].position, rng) * (wool ? kWoolLength : 1);
+  t.width = s_.width * std::max(0.2f, 1 + s_.width_variation * rng.normal()) * (wool ? kWoolWidth : 1);
+  t.tightness = stray ? 0 : saturate(lock.tightness * mix(0.8f, 1.1f, rng.uniform()) * (wool ? 0.4f : 1));
+  t.phase = lock.phase + style_.phase_spread * rng.normal();
+  t.radius = lock.radius * mix(0.75f, 1.15f, rng.uniform());
+  const float size = std::min(1.f, s_.length / 0.15f);
+  t.frizz = size * s_.frizz * (0.0005f + 0.0035f * s_.frizz) * (stray ? 2.5f : wool ? 2.f : 1.f) * mix(0.5f, 1.5f, rng.uniform());
+  t.stray = stray ? size * mix(0.003f, 0.022f, square(rng.uniform())) : 0;
+  return t;
+}
+
+/// The place `root` in the frame in which guide `g` starts.
+Vec3 StrandFiller::offset_from(std::uint32_t g, Vec3 root) const {
+  const std::size_t at = g * static_cast<std::size_t>(guides_.points);
+  const Vec3 d = root - guides_.position[at], side = guides_.side[at], up = guides_.up[at];
+  return {dot(d, side), dot(d, up), dot(d, cross(side, up))};
+}
+
+/// Where one is that travels with guide `g`, `offset` beside it, after arc length `s`.
+Vec3 StrandFiller::follow(std::uint32_t g, Vec3 offset, float s) const {
+  const float x = std::clamp(s / guides_.step, 0.f, static_cast<float>(guides_.points) - 1.001f);
   const std::size_t i = static_cast<std::size_t>(x), at = g * static_cast<std::size_t>(guides_.points) + i;
   const float t = x - static_cast<float>(i);
-  const Vec3 p = lerp(guides_.position[at], guides_.position[at + 1], t);
   const Vec3 side = lerp(guides_.side[at], guides_.side[at + 1], t), up = lerp(guides_.up[at], guides_.up[at + 1], t);
-  return p + side * offset.x + up * offset.y + cross(side, up) * offset.z;
+  return lerp(guides_.position[at], guides_.position[at + 1], t) + side * offset.x + up * offset.y +
+         cross(side, up) * offset.z;
 }
 
-void StrandFiller::fill(std::uint32_t root_index, std::size_t points, Vec3* position, float* width) const {
-  Rng rng(s_.seed, root_index, kStrandStream);
-  const Root& root = roots_[root_index];
-  const Neighbors& n = neighbors_[root_index];
-  const std::uint32_t own = n.guide[0];
-  const Lock& lock = locks_[own];
-  const bool flyaway = rng.uniform() < s_.flyaways;
+Vec3 StrandFiller::curl(std::uint32_t g, float s, float angle, float radius) const {
+  const std::size_t last = static_cast<std::size_t>(guides_.points - 1);
+  const std::size_t at = g * (last + 1) + std::min(static_cast<std::size_t>(s / guides_.step), last);
+  // A flat wave swings sideways over the skin, not into it.
+  return guides_.up[at] * (std::cos(angle) * radius) + guides_.side[at] * (std::sin(angle) * radius * style_.ellipticity);
+}
 
-  const float spread = s_.length_variation;
-  const float total = s_.length * std::clamp(1 + spread * (0.7f * lock.length + 0.714f * rng.normal()),
-                                             std::max(0.1f, 1 - 2.5f * spread), 1 + 2.5f * spread);
-  const float root_width = s_.width * std::max(0.3f, 1 + s_.width_variation * rng.normal());
-  const float tight = flyaway ? 0.f : lock.tightness * mix(0.8f, 1.1f, rng.uniform());
+/// Factor on a strand's offset from its guide: the tie of a ponytail presses all strands together.
+float StrandFiller::tie_squeeze(std::uint32_t g, float s) const {
+  const float tie = guides_.tie[g];
+  if (tie <= 0) return 1;
+  return mix(1.f, 0.25f, smoothstep(0.2f * tie, 0.95f * tie, s)) + 0.45f * smoothstep(0.005f, 0.06f, s - tie);
+}
+
+HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* position, float* width) const {
+  Rng rng(s_.seed, index, kStrandStream);
+  const Root& root = roots_[index];
+  const Membership& m = members_[index];
+  const std::uint32_t own = m.guide[0];
+  const Lock& lock = locks_[own];
+  const Traits t = draw_traits(index, rng);
+  const float step = t.length / static_cast<float>(points - 1);
+  Frizz frizz(rng, step);
 
   Vec3 offset[kBlend];
-  for (int k = 0; k < n.count; ++k) {
-    const std::size_t at = n.guide[k] * static_cast<std::size_t>(guides_.points);
-    const Vec3 d = root.position - guides_.position[at];
-    offset[k] = {dot(d, guides_.side[at]), dot(d, guides_.up[at]), dot(d, cross(guides_.side[at], guides_.up[at]))};
-  }
-  const bool curly = lock.radius > 0;
-  const float turn = curly ? kTwoPi * lock.radius / lock.pitch : 0;
-  const float stretch = 1 / std::sqrt(1 + turn * turn);  // axis length per strand length
-  const float phase = lock.phase + (s_.style == HairStyle::kAfro ? 2.5f : 0.5f) * rng.normal();
-  const float radius = lock.radius * mix(0.85f, 1.15f, rng.uniform());
-  const float amplitude = (0.0006f + 0.004f * s_.frizz) * s_.frizz * (flyaway ? 3.f : 1.f) * std::min(1.f, s_.length / 0.1f);
-  float wave[6], frequency[6];
-  for (int k = 0; k < 6; ++k) wave[k] = kTwoPi * rng.uniform(), frequency[k] = kTwoPi * (k < 3 ? mix(14.f, 30.f, rng.uniform()) : mix(40.f, 110.f, rng.uniform()));
+  for (int k = 0; k < kBlend; ++k) offset[k] = offset_from(m.guide[k], root.position);
+  const Vec3 tuft = t.stray > 0 ? offset[0] : offset_from(own, roots_[m.tuft].position);
+  const float slope = kTwoPi * t.radius / lock.pitch * std::sqrt(0.5f * (1 + square(style_.ellipticity)));
 
-  for (std::size_t j = 0; j < points; ++j) {
-    const float u = static_cast<float>(j) / static_cast<float>(points - 1);
-    const float axis = u * total * stretch;
-    const float gather = smoothstep(0.f, 0.8f, u);
-    Vec3 p;
-    for (int k = 0; k < n.count; ++k) {
-      const float w = k == 0 ? mix(n.weight[0], 1, gather) : n.weight[k] * (1 - gather);
-      if (w > 0) p = p + on_guide(n.guide[k], offset[k] * (1 - tight * gather), axis) * w;
+  position[0] = root.position, width[0] = t.width;
+  frizz.next();
+  float axis = 0;  // arc length along the lock
+  for (std::size_t j = 1; j < points; ++j) {
+    const float u = static_cast<float>(j) / static_cast<float>(points - 1), s = u * t.length;
+    const float grown = smoothstep(0.f, style_.curl_start, u) * mix(1.f, 0.8f, u);
+    axis += step / std::sqrt(1 + square(slope * grown));
+
+    const float gather = smoothstep(lock.start, 0.9f, u), fine = t.tightness * smoothstep(0.f, 0.5f, u);
+    const float squeeze = tie_squeeze(own, axis);
+    Vec3 p = follow(own, lerp(offset[0], tuft, 0.8f * fine) * ((1 - t.tightness * gather) * squeeze), axis);
+    if (gather < 1)
+      for (int k = 1; k < kBlend; ++k) {
+        const float weight = m.weight[k] * (1 - gather);
+        if (weight > 0) p = p + (follow(m.guide[k], offset[k] * squeeze, axis) - p) * weight;
+      }
+    if (t.radius > 0) {
+      const float wobble = 0.9f * std::sin(axis * 23.f + lock.phase);
+      p = p + curl(own, axis, t.phase + lock.handedness * (kTwoPi * axis / lock.pitch + wobble), t.radius * grown);
     }
-    if (curly) {
-      const float grown = smoothstep(0.f, 0.25f, u), angle = phase + lock.handedness * kTwoPi * axis / lock.pitch;
-      const std::size_t at = own * static_cast<std::size_t>(guides_.points) +
-                             std::min(static_cast<std::size_t>(axis / guides_.step), static_cast<std::size_t>(guides_.points - 1));
-      p = p + (guides_.side[at] * std::cos(angle) + guides_.up[at] * std::sin(angle)) * (radius * grown);
-    }
-    const float rough = amplitude * square(smoothstep(0.f, 1.f, u * 1.2f)) + amplitude * 0.3f * u;
-    const float s = u * total;
-    p = p + Vec3(std::sin(frequency[0] * s + wave[0]) + 0.4f * std::sin(frequency[3] * s + wave[3]),
-                 std::sin(frequency[1] * s + wave[1]) + 0.4f * std::sin(frequency[4] * s + wave[4]),
-                 std::sin(frequency[2] * s + wave[2]) + 0.4f * std::sin(frequency[5] * s + wave[5])) * rough;
-    if (ground_.collider && j > 0) {
+    p = p + frizz.next() * (t.frizz * u * (0.3f + 0.7f * u));
+    if (ground_.collider) {
       const DistanceSample skin = sample_distance(*ground_.collider, p);
-      const float clearance = std::min(0.3f * s, 0.0008f);
-      if (skin.distance < clearance) p = p + normalize(skin.gradient) * (clearance - skin.distance);
+      const float clearance = std::min(0.3f * s, 0.0008f), stray = t.stray * square(u);
+      p = p + normalize(skin.gradient) * (std::max(clearance - skin.distance, 0.f) + stray);
+    } else if (t.stray > 0) {
+      p = p + root.normal * (t.stray * square(u));
     }
-    position[j] = j == 0 ? root.position : p;
-    width[j] = root_width * (1 - s_.taper * u * u);
+    position[j] = p;
+    width[j] = t.width * (1 - s_.taper * square(u));
   }
+  return t.group;
 }
 
 }  // namespace
@@ -182,12 +248,12 @@ void StrandFiller::fill(std::uint32_t root_index, std::size_t points, Vec3* posi
 StrandSet fill_strands(const GrowSettings& settings, const Ground& ground, const GuideSet& guides,
                        const std::vector<Root>& roots, const Progress& progress) {
   const StrandFiller filler(settings, ground, guides, roots);
+  const std::vector<std::uint32_t> order = order_by_guide(filler.members(), guides.count());
   const std::size_t count = roots.size(), points = static_cast<std::size_t>(settings.points);
   StrandSet out;
   out.basis = CurveBasis::kCatmullRom;
   out.points.resize(count * points), out.widths.resize(count * points), out.offsets.resize(count + 1);
   out.root_uv.resize(count), out.strand_id.resize(count), out.guide_id.resize(count), out.group.resize(count);
-  const std::vector<std::uint32_t>& order = filler.order();
   constexpr std::size_t kChunk = 8192;  // strands between two calls of `progress`
   for (std::size_t chunk = 0; chunk < count; chunk += kChunk) {
     if (progress && !progress("grow", static_cast<double>(chunk) / static_cast<double>(count)))
@@ -198,9 +264,9 @@ StrandSet fill_strands(const GrowSettings& settings, const Ground& ground, const
         out.offsets[i + 1] = static_cast<std::uint32_t>((i + 1) * points);
         out.strand_id[i] = root;
         out.root_uv[i] = roots[root].uv;
-        out.guide_id[i] = static_cast<std::int32_t>(filler.guide_of(root));
-        out.group[i] = static_cast<std::uint16_t>(guides.group[filler.guide_of(root)]);
-        filler.fill(root, points, out.points.data() + i * points, out.widths.data() + i * points);
+        out.guide_id[i] = static_cast<std::int32_t>(filler.members()[root].guide[0]);
+        out.group[i] = static_cast<std::uint16_t>(
+            filler.fill(root, points, out.points.data() + i * points, out.widths.data() + i * points));
       }
     });
   }

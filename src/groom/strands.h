@@ -1,14 +1,16 @@
-// Single strands between the guides: clumps, curls, frizz, flyaways, widths.
+// Single strands between the guides: locks, curls, frizz, flyaways, lengths and widths.
 #pragma once
 
 #include <pelage/grow.h>
+
+#include <vector>
 
 #include "groom/guides.h"
 
 namespace pelage::groom {
 
-/// One strand per root. `roots` in the order of scatter_roots(); strands come out sorted by guide, with strand_id the
-/// place in `roots`, so that the strands with strand_id < n are an even thinning of the whole.
+/// One strand per root. Strands come out sorted by their nearest guide (guide_id); strand_id is the place in `roots`, so
+/// that the strands with strand_id < n are an even thinning of the whole when every prefix of `roots` is.
 StrandSet fill_strands(const GrowSettings& settings, const Ground& ground, const GuideSet& guides,
                        const std::vector<Root>& roots, const Progress& progress);
 

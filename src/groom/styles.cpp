@@ -13,27 +13,28 @@ GrowSettings grow_defaults(HairStyle style) {
   s.style = style;
   switch (style) {
     case HairStyle::kStraight:
-      s.length = 0.32f, s.length_variation = 0.12f, s.clumps = 700, s.clump_tightness = 0.45f, s.frizz = 0.12f;
+      s.length = 0.32f, s.length_variation = 0.12f, s.clumps = 900, s.clump_tightness = 0.5f, s.frizz = 0.15f;
       break;
     case HairStyle::kWavy:
-      s.length = 0.34f, s.curl_radius = 0.008f, s.curl_pitch = 0.075f, s.clumps = 500, s.clump_tightness = 0.6f;
-      s.frizz = 0.25f, s.flyaways = 0.025f;
+      s.length = 0.33f, s.length_variation = 0.12f, s.clumps = 600, s.clump_tightness = 0.65f, s.frizz = 0.3f;
+      s.curl_radius = 0.007f, s.curl_pitch = 0.085f, s.flyaways = 0.025f, s.volume = 0.018f;
       break;
     case HairStyle::kCurly:
-      s.length = 0.36f, s.curl_radius = 0.0085f, s.curl_pitch = 0.034f, s.clumps = 420, s.clump_tightness = 0.75f;
-      s.frizz = 0.3f, s.flyaways = 0.03f;
+      s.length = 0.40f, s.clumps = 650, s.clump_tightness = 0.7f, s.frizz = 0.4f, s.curl_radius = 0.0075f;
+      s.curl_pitch = 0.036f, s.flyaways = 0.03f, s.volume = 0.024f;
       break;
     case HairStyle::kAfro:
-      s.length = 0.20f, s.length_variation = 0.2f, s.curl_radius = 0.0035f, s.curl_pitch = 0.009f, s.clumps = 3000;
-      s.clump_tightness = 0.35f, s.frizz = 0.6f, s.gravity = 0.05f;
+      s.length = 0.22f, s.length_variation = 0.12f, s.clumps = 5000, s.clump_tightness = 0.3f, s.frizz = 0.6f;
+      s.curl_radius = 0.0035f, s.curl_pitch = 0.010f, s.flyaways = 0.04f, s.gravity = 0.1f, s.volume = 0.004f;
       break;
     case HairStyle::kPonytail:
-      s.length = 0.42f, s.length_variation = 0.1f, s.clumps = 600, s.clump_tightness = 0.35f, s.frizz = 0.12f;
-      s.flyaways = 0.01f;
+      s.length = 0.42f, s.length_variation = 0.1f, s.clumps = 900, s.clump_tightness = 0.35f, s.frizz = 0.12f;
+      s.curl_radius = 0.003f, s.curl_pitch = 0.12f, s.flyaways = 0.012f, s.volume = 0.008f;
       break;
     case HairStyle::kCoat:
-      s.length = 0.018f, s.length_variation = 0.2f, s.points = 16, s.width = 6e-5f, s.taper = 0.9f, s.clumps = 4000;
-      s.clump_tightness = 0.5f, s.frizz = 0.25f, s.gravity = 0.3f;
+      s.length = 0.016f, s.length_variation = 0.2f, s.points = 16, s.width = 7e-5f, s.taper = 0.9f, s.clumps = 6000;
+      s.clump_tightness = 0.55f, s.frizz = 0.4f, s.gravity = 0.3f, s.curl_radius = 0.0006f, s.curl_pitch = 0.012f;
+      s.volume = 0.002f;
       break;
   }
   return s;
