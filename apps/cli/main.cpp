@@ -18,6 +18,7 @@ namespace {
 constexpr int kFailed = 1, kUsage = 2;
 
 void add_verbs(CLI::App& app) {
+  add_grow(app);
   add_info(app);
   add_convert(app);
   add_bench(app);
@@ -28,7 +29,7 @@ void configure(CLI::App& app) {
   app.description("Renders, makes and converts hair and fur, strand by strand.");
   app.footer(
       "Examples:\n"
-      "  pelage grow --style curly -o curly.pelage\n"
+      "  pelage grow curly -o curly.pelage\n"
       "  pelage render curly.pelage -o curly.png\n"
       "  pelage VERB --help");
   app.set_version_flag("--version", fmt::format("pelage {}", version()));

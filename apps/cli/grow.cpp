@@ -1,0 +1,114 @@
+// pelage grow: makes hair from a seed.
+#include <fmt/format.h>
+#include <pelage/grow.h>
+#include <pelage/io.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "terminal.h"
+#include "verbs.h"
+
+namespace pelage::cli {
+namespace {
+
+struct GrowOptions {
+  std::string style, output, mesh, head_output;
+  float mesh_scale = 1;
+  UpAxis mesh_up = UpAxis::kY;
+  std::vector<std::function<void(GrowSettings&)>> changes;  // to the style's defaults, as typed
+};
+
+using OptionsPtr = std::shared_ptr<GrowOptions>;
+
+// --name VALUE for a field of GrowSettings.
+template <class T>
+void add_setting(CLI::App& verb, const OptionsPtr& options, const char* name, T GrowSettings::*field, const char* type,
+                 const char* help) {
+  verb.add_option_function<T>(
+          name, [options, field](T value) { options->changes.push_back([=](GrowSettings& s) { s.*field = value; }); }, help)
+      ->type_name(type)
+      ->group("Hair");
+}
+
+void add_settings(CLI::App& verb, const OptionsPtr& options) {
+  const auto count = [&](const char* name, int GrowSettings::*field, const char* help) {
+    add_setting(verb, options, name, field, "N", help);
+  };
+  const auto meters = [&](const char* name, float GrowSettings::*field, const char* help) {
+    add_setting(verb, options, name, field, "M", help);
+  };
+  const auto share = [&](const char* name, float GrowSettings::*field, const char* help) {
+    add_setting(verb, options, name, field, "X", help);
+  };
+  count("--strands", &GrowSettings::strands, "Number of strands, up to 1,000,000");
+  count("--points", &GrowSettings::points, "Control points a strand, 4 to 1024");
+  add_setting(verb, options, "--seed", &GrowSettings::seed, "N", "Another seed is another head of hair");
+  meters("--length", &GrowSettings::length, "Mean length of a strand, meters");
+  share("--length-variation", &GrowSettings::length_variation, "Standard deviation as a share of the length, 0 to 0.5");
+  meters("--width", &GrowSettings::width, "Mean diameter at the root, meters; human hair is 5e-5 to 1e-4");
+  share("--width-variation", &GrowSettings::width_variation, "Standard deviation as a share of the width, 0 to 0.5");
+  share("--taper", &GrowSettings::taper, "Share of the width that is gone at the tip, 0 to 1");
+  meters("--curl-radius", &GrowSettings::curl_radius, "Mean radius of curls or amplitude of waves, meters; 0 for none");
+  meters("--curl-pitch", &GrowSettings::curl_pitch, "Mean distance along a lock in which it turns once, meters");
+  count("--clumps", &GrowSettings::clumps, "Number of locks; 0 for none");
+  share("--clump-tightness", &GrowSettings::clump_tightness, "0 for none, 1 for tips that meet");
+  share("--frizz", &GrowSettings::frizz, "0 combed to 1 unruly");
+  share("--flyaways", &GrowSettings::flyaways, "Share of strands that leave their lock, 0 to 1");
+  share("--gravity", &GrowSettings::gravity, "0 stands, 1 hangs");
+  meters("--volume", &GrowSettings::volume, "How far hair of the crown piles up, meters");
+  meters("--parting", &GrowSettings::parting, "Meters left of the head's middle, -0.05 to 0.05");
+  share("--undercoat", &GrowSettings::undercoat, "Coat: share of short, fine wool between the guard hairs, 0 to 1");
+}
+
+GrowSettings settings_of(const GrowOptions& options) {
+  GrowSettings settings = grow_defaults(hair_style_from_name(options.style));
+  for (const auto& change : options.changes) change(settings);
+  return settings;
+}
+
+void grow_verb(const GrowOptions& options) {
+  const GrowSettings settings = settings_of(options);
+  const TriangleMesh surface =
+      options.mesh.empty() ? mannequin_head() : read_mesh(options.mesh, options.mesh_scale, options.mesh_up);
+  StrandSet strands;
+  std::vector<std::string> losses;
+  {
+    ProgressLine progress;
+    strands = grow(settings, surface, progress.callback());
+    losses = write_strands(options.output, strands, "", progress.callback());
+  }
+  if (!options.head_output.empty()) write_mesh(options.head_output, surface);
+  for (const std::string& loss : losses) fmt::print(stderr, "pelage: {}: {}\n", options.output, loss);
+  fmt::print("{}: {} strands, {} points\n", options.output, strands.strand_count(), strands.point_count());
+}
+
+}  // namespace
+
+void add_grow(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("grow", "Make hair from a seed");
+  const auto options = std::make_shared<GrowOptions>();
+  std::string styles;
+  for (const std::string& name : hair_style_names()) styles += (styles.empty() ? "" : ", ") + name;
+  verb->add_option("STYLE", options->style, "One of " + styles)->required();
+  verb->add_option("-o,--output", options->output, "Groom to write; the extension decides the format")->type_name("FILE")->required();
+  verb->add_option("--mesh", options->mesh, "Surface to grow on instead of the mannequin's scalp")->type_name("FILE");
+  verb->add_option("--mesh-scale", options->mesh_scale, "Meters per unit of the mesh")->type_name("X");
+  verb->add_option("--mesh-up", options->mesh_up, "Axis of the mesh that points up")
+      ->transform(CLI::CheckedTransformer(std::vector<std::pair<std::string, UpAxis>>{{"y", UpAxis::kY}, {"z", UpAxis::kZ}}))
+      ->type_name("y|z");
+  verb->add_option("--write-mesh", options->head_output, "Also write the surface, in meters, to FILE")->type_name("FILE");
+  add_settings(*verb, options);
+  add_machine_options(*verb);
+  verb->footer("Settings that are not given come from the style.\n\n"
+               "Examples:\n"
+               "  pelage grow curly -o curly.pelage\n"
+               "  pelage grow straight --strands 100000 --length 0.4 --seed 7 -o long.pelage --write-mesh head.obj\n"
+               "  pelage grow coat --mesh spot.obj --strands 200000 -o spot.pelage");
+  verb->callback([options] { grow_verb(*options); });
+}
+
+}  // namespace pelage::cli
