@@ -21,6 +21,7 @@ void add_verbs(CLI::App& app) {
   add_grow(app);
   add_info(app);
   add_convert(app);
+  add_render(app);
   add_bench(app);
 }
 
@@ -97,6 +98,9 @@ int run(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& e) {
     return report_usage(app, e);
+  } catch (const UsageError& e) {
+    fmt::print(stderr, "pelage: {}\n", e.what());
+    return kUsage;
   } catch (const std::bad_alloc&) {
     return fail("not enough memory for this; try fewer samples, a smaller picture or fewer strands");
   } catch (const std::exception& e) {

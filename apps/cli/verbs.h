@@ -2,9 +2,16 @@
 // each stands in the file of its name. The order in add_verbs() (main.cpp) is the order of the help.
 #pragma once
 
+#include <pelage/error.h>
+
 #include <CLI/CLI.hpp>
 
 namespace pelage::cli {
+
+/// A wrong option or value: exit status 2.
+struct UsageError : Error {
+  using Error::Error;
+};
 
 void add_render(CLI::App& app);
 void add_grow(CLI::App& app);

@@ -11,14 +11,20 @@ namespace pelage {
 /// What is seen where nothing is: the environment where it is visible, else the background color, else nothing.
 Backdrop make_backdrop(const Scene& scene, const CameraView& view);
 
-/// Writes the picture of one band: row y of the band becomes row `first_row` + y of `linear` (R, G, B, A;
-/// premultiplied; exposure applied). AlphaSource::kSamples averages the samples; kAnalytic lays the mean color of the
-/// visible strand samples over the opaque scene by the exact area of GBuffer::coverage.
-///
-/// All layers of a band have the same size and number of samples; `linear` has four channels and their width.
-/// O(samples), rows in parallel.
-void resolve(const GBuffer& gbuffer, const Radiance& radiance, const OpaqueLayer& opaque, const Backdrop& backdrop,
-             const RenderSettings& settings, int first_row, Image& linear);
+/// The layers of one band of the picture, all of the same size and number of samples. Refers, owns nothing.
+struct FrameLayers {
+  const GBuffer& gbuffer;
+  const Radiance& radiance;  ///< of GBuffer::sample_keys, or of `center` where there are none
+  const Radiance& edges;     ///< one sample per pixel: a strand that touches it; read where no sample of the pixel is
+                             ///< covered, for AlphaSource::kAnalytic only
+  const OpaqueLayer& opaque; ///< empty without meshes
+  const Backdrop& backdrop;
+};
+
+/// Writes the picture of one band: its row y becomes row `first_row` + y of `linear` (R, G, B, A; premultiplied;
+/// exposure applied). AlphaSource::kSamples averages the samples; kAnalytic lays the mean color of the visible strand
+/// samples over the opaque scene by the exact area of GBuffer::coverage. O(samples), rows in parallel.
+void resolve(const FrameLayers& layers, const RenderSettings& settings, int first_row, Image& linear);
 
 /// `linear` (R, G, B, A; premultiplied) tone-mapped and sRGB-encoded, 0…1. Color is un-premultiplied for the curve and
 /// stays straight, as PNG wants it; alpha is copied. O(pixels).

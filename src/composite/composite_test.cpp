@@ -18,7 +18,7 @@ constexpr Vec3 kHair{0.5f, 0.25f, 0.125f}, kMesh{0.1f, 0.9f, 0.3f}, kSky{1, 2, 4
 // One pixel of four samples: hair, mesh, sky, hair.
 struct OnePixel {
   GBuffer gbuffer;
-  Radiance radiance;
+  Radiance radiance, edges;
   OpaqueLayer opaque;
   Backdrop backdrop;
   RenderSettings settings;
@@ -32,6 +32,8 @@ struct OnePixel {
     radiance.index.resize(4);
     radiance.color.resize(1);
     radiance.color[0] = kHair;
+    edges.index.resize(1);
+    edges.index[0] = Radiance::kNone;
     opaque.width = opaque.height = 1;
     opaque.samples = 4;
     opaque.depth.resize(4);
@@ -44,7 +46,7 @@ struct OnePixel {
     backdrop.color = kSky;
   }
   Vec4 pixel() {
-    resolve(gbuffer, radiance, opaque, backdrop, settings, 0, linear);
+    resolve({gbuffer, radiance, edges, opaque, backdrop}, settings, 0, linear);
     const float* p = linear.at(0, 0);
     return {p[0], p[1], p[2], p[3]};
   }
@@ -79,7 +81,7 @@ TEST(Resolve, AnalyticLaysTheAreaOverEverything) {
   OnePixel p;
   p.settings.alpha = AlphaSource::kAnalytic;
   p.gbuffer.coverage[0] = static_cast<std::uint32_t>(0.3f / GBuffer::kCoverageUnit);
-  const float a = static_cast<float>(p.gbuffer.coverage[0]) * GBuffer::kCoverageUnit;
+  const float a = -std::expm1(-static_cast<float>(p.gbuffer.coverage[0]) * GBuffer::kCoverageUnit);
   expect_near(p.pixel(), kHair * a + (kMesh * 2.f + kSky * 2.f) * (0.25f * (1 - a)), 1);
   p.backdrop.color = {};
   p.backdrop.alpha = 0;
@@ -92,16 +94,17 @@ TEST(Resolve, AnalyticTakesTheEdgeColorWhereNoSampleIsCovered) {
   p.gbuffer.coverage[0] = static_cast<std::uint32_t>(0.01f / GBuffer::kCoverageUnit);
   p.radiance.index.fill(Radiance::kNone);
   expect_near(p.pixel(), (kMesh + kSky) * 0.5f, 1);
-  p.radiance.edge.resize(1);
-  p.radiance.edge[0] = 0;
-  const float a = static_cast<float>(p.gbuffer.coverage[0]) * GBuffer::kCoverageUnit;
+  p.edges.index[0] = 0;
+  p.edges.color.resize(1);
+  p.edges.color[0] = kHair;
+  const float a = -std::expm1(-static_cast<float>(p.gbuffer.coverage[0]) * GBuffer::kCoverageUnit);
   expect_near(p.pixel(), kHair * a + (kMesh + kSky) * (0.5f * (1 - a)), 1);
 }
 
-TEST(Resolve, AreaAboveThePixelCountsAsThePixel) {
+TEST(Resolve, PlentyOfStrandsCoverThePixel) {
   OnePixel p;
   p.settings.alpha = AlphaSource::kAnalytic;
-  p.gbuffer.coverage[0] = static_cast<std::uint32_t>(1.7f / GBuffer::kCoverageUnit);
+  p.gbuffer.coverage[0] = static_cast<std::uint32_t>(50 / GBuffer::kCoverageUnit);
   expect_near(p.pixel(), kHair, 1);
 }
 
@@ -114,7 +117,7 @@ TEST(Resolve, AnEmptyOpaqueLayerIsAllBackdrop) {
 TEST(Resolve, BandsGoToTheirRows) {
   OnePixel p;
   p.linear = Image(1, 3, {"R", "G", "B", "A"});
-  resolve(p.gbuffer, p.radiance, p.opaque, p.backdrop, p.settings, 2, p.linear);
+  resolve({p.gbuffer, p.radiance, p.edges, p.opaque, p.backdrop}, p.settings, 2, p.linear);
   EXPECT_EQ(p.linear.at(0, 0)[3], 0);
   EXPECT_EQ(p.linear.at(0, 1)[3], 0);
   EXPECT_EQ(p.linear.at(0, 2)[3], 1);

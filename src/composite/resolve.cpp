@@ -20,9 +20,9 @@ Rgba over(Rgba front, Rgba back) {
 // The layers of one band and how to read a pixel of them.
 class Resolver {
  public:
-  Resolver(const GBuffer& gbuffer, const Radiance& radiance, const OpaqueLayer& opaque, const Backdrop& backdrop)
-      : gbuffer_(gbuffer), radiance_(radiance), opaque_(opaque), backdrop_(backdrop),
-        samples_(static_cast<std::size_t>(gbuffer.samples)) {}
+  explicit Resolver(const FrameLayers& layers)
+      : gbuffer_(layers.gbuffer), radiance_(layers.radiance), edges_(layers.edges), opaque_(layers.opaque), backdrop_(layers.backdrop),
+        samples_(static_cast<std::size_t>(layers.gbuffer.samples)) {}
 
   /// Each sample shows its nearest thing; the pixel is their mean.
   Rgba by_samples(std::size_t pixel) const {
@@ -47,10 +47,9 @@ class Resolver {
       back.alpha += seen.alpha;
       if (const std::uint32_t i = radiance_.index[s]; i != Radiance::kNone) hair += radiance_.color[i], ++hits;
     }
-    if (!hits && !radiance_.edge.empty() && radiance_.edge[pixel] != Radiance::kNone)
-      hair = radiance_.color[radiance_.edge[pixel]], hits = 1;
+    if (!hits && edges_.index[pixel] != Radiance::kNone) hair = edges_.color[edges_.index[pixel]], hits = 1;
     if (!hits) return mean(back);
-    const float area = std::min(1.f, static_cast<float>(gbuffer_.coverage[pixel]) * GBuffer::kCoverageUnit);
+    const float area = analytic_coverage(gbuffer_, pixel);
     return over({hair * (area / static_cast<float>(hits)), area}, mean(back));
   }
 
@@ -66,6 +65,7 @@ class Resolver {
 
   const GBuffer& gbuffer_;
   const Radiance& radiance_;
+  const Radiance& edges_;
   const OpaqueLayer& opaque_;
   const Backdrop& backdrop_;
   std::size_t samples_;
@@ -73,16 +73,19 @@ class Resolver {
 
 }  // namespace
 
-void resolve(const GBuffer& gbuffer, const Radiance& radiance, const OpaqueLayer& opaque, const Backdrop& backdrop,
-             const RenderSettings& settings, int first_row, Image& linear) {
+void resolve(const FrameLayers& layers, const RenderSettings& settings, int first_row, Image& linear) {
+  const GBuffer& gbuffer = layers.gbuffer;
   const auto width = static_cast<std::size_t>(gbuffer.width), height = static_cast<std::size_t>(gbuffer.height);
   PELAGE_CHECK_EQ(linear.channel_count(), 4u);
   PELAGE_CHECK_EQ(linear.width, gbuffer.width);
   PELAGE_CHECK_LE(first_row + gbuffer.height, linear.height);
-  PELAGE_CHECK_EQ(radiance.index.size(), width * height * static_cast<std::size_t>(gbuffer.samples));
+  PELAGE_CHECK_EQ(layers.radiance.index.size(), width * height * static_cast<std::size_t>(gbuffer.samples));
   const bool analytic = settings.alpha == AlphaSource::kAnalytic;
-  if (analytic) PELAGE_CHECK_EQ(gbuffer.coverage.size(), width * height);
-  const Resolver resolver(gbuffer, radiance, opaque, backdrop);
+  if (analytic) {
+    PELAGE_CHECK_EQ(gbuffer.coverage.size(), width * height);
+    PELAGE_CHECK_EQ(layers.edges.index.size(), width * height);
+  }
+  const Resolver resolver(layers);
   const float exposure = std::exp2(settings.exposure);
   parallel_for(height, 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t y = first; y < last; ++y) {

@@ -9,6 +9,7 @@
 #include <pelage/vec.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -72,13 +73,18 @@ struct GBuffer {
   Buffer<PixelKey> center;               ///< [h·w] the band covers the pixel's centre
   Buffer<PixelKey> conservative;         ///< [h·w] the band touches the pixel anywhere
   Buffer<PixelKey> sample_keys;          ///< [h·w·samples] the band covers the sample; samples of a pixel adjacent
-  static constexpr float kCoverageUnit = 1.f / 65536;  ///< pixels of area per unit of `coverage`
-  Buffer<std::uint32_t> coverage;        ///< [h·w] analytic: area of the pixel that strands cover, fixed point
+  static constexpr float kCoverageUnit = 0x1p-16f;  ///< optical depth per unit of `coverage`
+  Buffer<std::uint32_t> coverage;        ///< [h·w] analytic: optical depth of the strands, fixed point; analytic_coverage()
   Buffer<std::int32_t> tangent_cos2;     ///< [h·w] Σ area·cos 2ψ, ψ the screen angle of the band; fixed point
   Buffer<std::int32_t> tangent_sin2;     ///< [h·w] Σ area·sin 2ψ
   Buffer<std::uint32_t> overdraw;        ///< [h·w] fragments tested; only for the debug view
   Buffer<float> opaque_depth;            ///< [h·w·samples], or empty without meshes; camera z, metres, +inf for none
 };
+
+/// Share of the pixel that strands cover, 0…1. Strands are independent of each other: transmittances multiply.
+inline float analytic_coverage(const GBuffer& g, std::size_t pixel) {
+  return -std::expm1(-static_cast<float>(g.coverage[pixel]) * GBuffer::kCoverageUnit);
+}
 
 /// Opaque scene behind and between the strands, by primary rays.
 struct OpaqueLayer {
@@ -125,8 +131,6 @@ struct LightRig {
 struct Radiance {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   Buffer<std::uint32_t> index;           ///< [h·w·samples]
-  Buffer<std::uint32_t> edge;            ///< [h·w] color of a strand that touches a pixel none of whose samples it covers;
-                                         ///< for AlphaSource::kAnalytic, else empty
   Buffer<Vec3> color;                    ///< scene-linear radiance, W/(m²·sr)
 };
 

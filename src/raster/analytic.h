@@ -12,13 +12,8 @@
 
 namespace pelage {
 
-inline constexpr float kOpticalDepthUnit = 0x1p-16f;  ///< of GBuffer::coverage
+inline constexpr float kOpticalDepthUnit = GBuffer::kCoverageUnit;  ///< analytic_coverage() reads it
 inline constexpr float kAreaUnit = 0x1p-14f;          ///< of GBuffer::tangent_cos2 and tangent_sin2
-
-/// Share of the pixel that hair covers, 0…1.
-inline float analytic_coverage(const GBuffer& g, std::size_t pixel) {
-  return -std::expm1(-static_cast<float>(g.coverage[pixel]) * kOpticalDepthUnit);
-}
 
 /// Screen direction of the hair in a pixel, by double angles: unit length; (1, 0) where there is none.
 inline Vec2 analytic_tangent(const GBuffer& g, std::size_t pixel) {

@@ -1,0 +1,172 @@
+// pelage render: a groom or a scene file becomes a picture.
+#include "render.h"
+
+#include <fmt/format.h>
+#include <pelage/error.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <set>
+
+#include "core/nearest.h"
+#include "io/atomic_file.h"
+#include "io/scene_tables.h"
+#include "terminal.h"
+#include "verbs.h"
+
+namespace pelage::cli {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string extension_of(const std::string& path) {
+  const std::size_t dot = path.find_last_of("./");
+  return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot + 1);
+}
+
+// Before the long work: an output that cannot be written is told now. Opens what writing would open, and drops it.
+void check_output(const std::string& path) {
+  static const std::set<std::string> known{"exr", "png", "hdr"};
+  if (!known.count(extension_of(path))) throw Error(path, "", "no known picture format", "use .exr, .png or .hdr");
+  const io::AtomicFile probe(path);
+}
+
+// R, G, B, and A where something shows through.
+Image without_alpha(const Image& image) {
+  Image result(image.width, image.height, {"R", "G", "B"});
+  for (std::size_t i = 0, o = 0; i < image.pixels.size(); i += 4, o += 3)
+    std::copy_n(image.pixels.data() + i, 3, result.pixels.data() + o);
+  return result;
+}
+
+// Appends the channels of other views of the same scene: their own passes, without light.
+void append_layers(const Scene& scene, const std::vector<std::string>& layers, const Progress& progress, Image& image) {
+  static const std::vector<std::pair<std::string, View>> kLayers{
+      {"Z", View::kDepth}, {"coverage", View::kCoverage}, {"id", View::kStrandId}, {"u", View::kU},
+      {"tangent", View::kTangent}, {"albedo", View::kAlbedo}, {"overdraw", View::kOverdraw}};
+  for (const std::string& name : layers) {
+    const auto layer = std::find_if(kLayers.begin(), kLayers.end(), [&](const auto& l) { return l.first == name; });
+    Scene pass = scene;
+    pass.settings.view = layer->second;
+    const Image data = render(pass, progress).linear;
+    const bool color = name == "id" || name == "tangent" || name == "albedo";
+    const std::vector<std::string> suffixes = color ? std::vector<std::string>{".R", ".G", ".B"} : std::vector<std::string>{""};
+    std::vector<std::string> names = image.channels;
+    for (const std::string& suffix : suffixes) names.push_back(name + suffix);
+    Image merged(image.width, image.height, names);
+    const std::size_t n = image.channel_count(), m = names.size();
+    for (std::size_t p = 0; p < data.pixels.size() / 4; ++p) {
+      std::copy_n(image.pixels.data() + p * n, n, merged.pixels.data() + p * m);
+      std::copy_n(data.pixels.data() + p * 4, m - n, merged.pixels.data() + p * m + n);
+    }
+    image = std::move(merged);
+  }
+}
+
+void write_output(const std::string& path, const RenderOptions& options, const Scene& scene, const RenderResult& result,
+                  const Progress& progress) {
+  const std::string extension = extension_of(path);
+  if (extension == "png")
+    return write_image(path, scene.settings.transparent_background ? result.display : without_alpha(result.display));
+  if (extension == "hdr") return write_image(path, without_alpha(result.linear));
+  Image image = result.linear;
+  append_layers(scene, options.layers, progress, image);
+  write_image(path, image, options.full_float);
+}
+
+void render_verb(const RenderOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const std::string& path : options.outputs) check_output(path);
+  std::vector<std::string> notes;
+  RenderResult result;
+  Scene scene;
+  {
+    ProgressLine line;
+    const Progress progress = line.callback();
+    scene = make_scene(options, progress, notes);
+    const double read_seconds = seconds_since(start);
+    result = render(scene, progress);
+    result.stats.insert(result.stats.begin(), {"io.read", read_seconds, 0, scene.grooms.size() + scene.meshes.size(), "files"});
+    const auto writing = std::chrono::steady_clock::now();
+    for (const std::string& path : options.outputs) write_output(path, options, scene, result, progress);
+    result.stats.push_back({"io.write", seconds_since(writing), 0, options.outputs.size(), "files"});
+  }
+  for (const std::string& note : notes) fmt::print(stderr, "pelage: {}: {}\n", options.input, note);
+  if (options.stats) print_stats(scene, result, seconds_since(start));
+  if (options.json) print_json(scene, result, options.outputs, seconds_since(start));
+}
+
+void add_picture_options(CLI::App& verb, RenderOptions& o) {
+  verb.add_option("--size", o.size, "Pixels, e.g. 1920x1080")->type_name("WxH");
+  verb.add_option("--spp", o.samples, "Samples per pixel")->check(CLI::IsMember({1, 2, 4, 8, 16}));
+  verb.add_option("--view", o.view, "beauty, strand-id, u, tangent, depth, coverage, overdraw or albedo")->type_name("NAME");
+  verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic")->type_name("NAME");
+  verb.add_option("--exposure", o.exposure, "Stops")->check(CLI::Range(-100.0, 100.0));
+  verb.add_option("--tone-map", o.tone_map, "Curve of PNG output: aces, none")->type_name("NAME");
+  verb.add_option("--background", o.background, "Linear R,G,B, or transparent");
+  verb.add_option("--layers", o.layers, "More channels of EXR output")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw"}));
+  verb.add_flag("--float", o.full_float, "EXR with 32 bits a channel instead of 16");
+}
+
+void add_scene_options(CLI::App& verb, RenderOptions& o) {
+  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb); may be repeated")->type_name("FILE")->allow_extra_args(false);
+  verb.add_option("--scale", o.scale, "Meters per unit of the files; guessed without it")->check(CLI::PositiveNumber);
+  verb.add_option("--up", o.up, "Axis of the files that points up: y, z, auto")->type_name("AXIS");
+  verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");
+  verb.add_option("--target", o.target, "What it looks at")->delimiter(',')->expected(3)->type_name("X,Y,Z");
+  verb.add_option("--fov", o.fov, "Full vertical angle, degrees")->check(CLI::Range(0.01, 179.0));
+  verb.add_option("--turn", o.turn, "Takes the camera around the target, degrees")->check(CLI::Range(-3600.0, 3600.0));
+  verb.add_flag("--ortho", o.orthographic, "Orthographic camera");
+  verb.add_option("--light", o.lights, "directional:DX,DY,DZ:R,G,B or point:X,Y,Z:R,G,B; replaces the lights; may be repeated")
+      ->type_name("LIGHT")->allow_extra_args(false);
+  verb.add_option("--env", o.environment, "Latitude-longitude image that lights the scene")->type_name("FILE");
+  verb.add_option("--env-rotation", o.environment_rotation, "Degrees about +Y")->check(CLI::Range(-3600.0, 3600.0));
+  verb.add_flag("--env-visible", o.environment_visible, "Show the environment behind the scene");
+  verb.add_flag("--no-shadows", o.no_shadows, "Light passes through everything");
+}
+
+void add_hair_options(CLI::App& verb, RenderOptions& o) {
+  verb.add_option("--hair", o.hair, "black, brown, light-brown, blond, red or white")->type_name("NAME");
+  verb.add_option("--color", o.color, "Linear color of a dense tuft, 0…1")->delimiter(',')->expected(3)->type_name("R,G,B")->check(CLI::Range(0.0, 1.0));
+  verb.add_option("--melanin", o.melanin, "Eumelanin and pheomelanin")->delimiter(',')->expected(1, 2)->type_name("E[,P]")->check(CLI::Range(0.0, 100.0));
+  verb.add_option("--model", o.model, "Fiber scattering: kajiya-kay, marschner, zhu")->type_name("NAME");
+  verb.add_option("--width-scale", o.width_scale, "Multiplies every width")->check(CLI::PositiveNumber);
+  verb.add_option("--subdivisions", o.subdivisions, "Segments per span; 0 chooses")->check(CLI::Range(0, 64));
+  verb.add_flag("--no-dual-scattering", o.no_dual_scattering, "Single scattering only");
+  verb.add_option("--opacity-map", o.opacity_map_size, "Texels a side of a light's map")->check(CLI::Range(64, 4096));
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("render", "Render a groom or a scene file");
+  auto o = std::make_shared<RenderOptions>();
+  verb->add_option("INPUT", o->input, "Groom file, or scene file (JSON)")->type_name("FILE");
+  verb->add_option("-o,--output", o->outputs, "Picture to write: .exr, .png or .hdr; may be repeated")->type_name("FILE")->allow_extra_args(false);
+  add_picture_options(*verb, *o);
+  add_scene_options(*verb, *o);
+  add_hair_options(*verb, *o);
+  verb->add_flag("--stats", o->stats, "Print time and memory of every stage");
+  verb->add_flag("--json", o->json, "Print them as JSON");
+  verb->add_flag("--schema", o->schema, "Print the JSON schema of scene files and stop");
+  add_machine_options(*verb);
+  verb->footer(
+      "Without options: framed, three lights, brown hair.\n"
+      "Examples:\n"
+      "  pelage render hair.tfx --mesh head.obj -o hair.png\n"
+      "  pelage render hair.tfx -o hair.exr --size 1920x1080 --spp 16 --hair blond --stats\n"
+      "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage");
+  verb->callback([o] {
+    if (o->schema) return fmt::print("{}", io::scene_schema());
+    if (o->input.empty()) throw CLI::RequiredError("INPUT");
+    if (o->outputs.empty()) throw CLI::RequiredError("--output");
+    render_verb(*o);
+  });
+}
+
+}  // namespace pelage::cli

@@ -1,0 +1,34 @@
+// The options of `pelage render`, and what becomes of them.
+#pragma once
+
+#include <pelage/io.h>
+#include <pelage/render.h>
+#include <pelage/scene.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pelage::cli {
+
+/// As typed; what was not typed is empty and keeps the scene's value.
+struct RenderOptions {
+  std::string input;
+  std::vector<std::string> outputs, meshes, lights;
+  std::optional<std::string> size, view, alpha, tone_map, model, hair, background, environment, up;
+  std::optional<int> samples, subdivisions, opacity_map_size;
+  std::optional<float> exposure, fov, turn, scale, width_scale, environment_rotation;
+  std::vector<float> eye, target, color, melanin;
+  std::vector<std::string> layers;
+  bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;
+  bool full_float = false, stats = false, json = false, schema = false;
+};
+
+/// Reads the groom or scene file and applies the options to it. What the reader assumed is told in `notes`.
+Scene make_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes);
+
+/// `render --stats` and `--json`.
+void print_stats(const Scene& scene, const RenderResult& result, double seconds);
+void print_json(const Scene& scene, const RenderResult& result, const std::vector<std::string>& outputs, double seconds);
+
+}  // namespace pelage::cli

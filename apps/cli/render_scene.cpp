@@ -1,0 +1,180 @@
+// From the options of `pelage render` to a scene.
+#include <fmt/format.h>
+#include <pelage/error.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+#include "core/nearest.h"
+#include "render.h"
+#include "verbs.h"
+
+namespace pelage::cli {
+namespace {
+
+constexpr float kDegree = 3.14159265f / 180;
+
+template <class T>
+T by_name(const char* option, const std::string& name, const std::map<std::string, T>& values) {
+  if (const auto found = values.find(name); found != values.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [known, value] : values) names.push_back(known);
+  throw UsageError(option, name, "unknown value", fmt::format("did you mean `{}`?", nearest_name(name, names)));
+}
+
+// Numbers separated by `separator`, all of the text; throws Error unless there are `count`.
+std::vector<float> numbers(const char* option, const std::string& text, char separator, std::size_t count) {
+  std::vector<float> values;
+  const char* at = text.c_str();
+  for (char* end = nullptr;; at = end + 1) {
+    values.push_back(std::strtof(at, &end));
+    if (end == at || !std::isfinite(values.back())) break;
+    if (*end == '\0' && values.size() == count) return values;
+    if (*end != separator) break;
+  }
+  throw UsageError(option, text, "not understood", fmt::format("give {} numbers separated by `{}`", count, separator));
+}
+
+Vec3 vector(const char* option, const std::string& text) {
+  const std::vector<float> v = numbers(option, text, ',', 3);
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 vector(const std::vector<float>& v) { return {v[0], v[1], v[2]}; }
+
+bool is_scene_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char c = 0;
+  while (file.get(c))
+    if (!std::isspace(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 0x80) return c == '{';
+  return false;
+}
+
+// "directional:0,-1,0:3,3,3", "point:0,1,1:2,2,2"; intensity as in scene files.
+Light parse_light(const std::string& text) {
+  const std::size_t first = text.find(':'), second = text.find(':', first == std::string::npos ? first : first + 1);
+  if (second == std::string::npos)
+    throw UsageError("--light", text, "not understood", "directional:DX,DY,DZ:R,G,B or point:X,Y,Z:R,G,B");
+  Light light;
+  light.type = by_name<Light::Type>("--light", text.substr(0, first), {{"directional", Light::Type::kDirectional}, {"point", Light::Type::kPoint}});
+  const Vec3 place = vector("--light", text.substr(first + 1, second - first - 1));
+  light.intensity = vector("--light", text.substr(second + 1));
+  if (light.type == Light::Type::kPoint) light.position = place;
+  else if (!(length(place) > 0)) throw UsageError("--light", text, "no direction", "");
+  else light.direction = normalize(place);
+  return light;
+}
+
+void read_groom_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes, Scene& scene) {
+  ImportOptions import;
+  if (options.scale) import.scale = *options.scale;
+  if (options.up) import.up = by_name<UpAxis>("--up", *options.up, {{"auto", UpAxis::kAuto}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}});
+  ImportReport report;
+  GroomInstance& groom = scene.grooms.emplace_back();
+  groom.strands = std::make_shared<StrandSet>(read_strands(options.input, import, &report, progress));
+  if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
+  notes = report.notes;
+  if (!report.repairs.clean()) notes.push_back(report.repairs.summary());
+  // Meshes that belong to a groom come in its units and axes.
+  for (const std::string& path : options.meshes)
+    scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(read_mesh(path, report.scale, report.up));
+}
+
+void apply_settings(const RenderOptions& o, RenderSettings& s) {
+  if (o.size) {
+    const std::vector<float> v = numbers("--size", *o.size, 'x', 2);
+    s.width = static_cast<int>(v[0]), s.height = static_cast<int>(v[1]);
+    if (s.width < 1 || s.height < 1 || s.width > 16384 || s.height > 16384)
+      throw UsageError("--size", *o.size, "out of range", "from 1x1 to 16384x16384");
+  }
+  if (o.samples) s.samples = *o.samples;
+  if (o.alpha) s.alpha = by_name<AlphaSource>("--alpha", *o.alpha, {{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}});
+  if (o.view)
+    s.view = by_name<View>("--view", *o.view, {{"beauty", View::kBeauty}, {"strand-id", View::kStrandId}, {"u", View::kU},
+                                               {"tangent", View::kTangent}, {"depth", View::kDepth}, {"coverage", View::kCoverage},
+                                               {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo}});
+  if (o.tone_map) s.tone_map = by_name<ToneMap>("--tone-map", *o.tone_map, {{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
+  if (o.exposure) s.exposure = *o.exposure;
+  if (o.subdivisions) s.subdivisions = *o.subdivisions;
+  if (o.opacity_map_size) s.opacity_map_size = *o.opacity_map_size;
+  if (o.no_shadows) s.shadows = false;
+  if (o.no_dual_scattering) s.dual_scattering = false;
+  if (o.background && *o.background == "transparent") s.transparent_background = true;
+  else if (o.background) s.background = vector("--background", *o.background), s.transparent_background = false;
+}
+
+void apply_material(const RenderOptions& o, HairMaterial& m) {
+  using Source = HairMaterial::ColorSource;
+  if (o.model)
+    m.model = by_name<HairMaterial::Model>("--model", *o.model, {{"kajiya-kay", HairMaterial::Model::kKajiyaKay},
+                                                                 {"marschner", HairMaterial::Model::kMarschner},
+                                                                 {"zhu", HairMaterial::Model::kZhu}});
+  if (o.hair) {
+    const Vec2 melanin = by_name<Vec2>("--hair", *o.hair, {{"black", {8, 0}}, {"brown", {1.3f, 0.2f}}, {"light-brown", {0.5f, 0.2f}},
+                                                           {"blond", {0.12f, 0.12f}}, {"red", {0.25f, 1.3f}}, {"white", {0.01f, 0}}});
+    m.eumelanin = melanin.x, m.pheomelanin = melanin.y, m.color_source = Source::kMelanin;
+  }
+  if (!o.melanin.empty()) m.eumelanin = o.melanin[0], m.pheomelanin = o.melanin.size() > 1 ? o.melanin[1] : 0, m.color_source = Source::kMelanin;
+  if (!o.color.empty()) m.color = vector(o.color), m.color_source = Source::kRgb;
+}
+
+// The eye goes around the target about the vertical axis.
+void turn(Camera& camera, float degrees) {
+  const float c = std::cos(degrees * kDegree), s = std::sin(degrees * kDegree);
+  const Vec3 d = camera.eye - camera.target;
+  camera.eye = camera.target + Vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
+}
+
+void apply_camera(const RenderOptions& o, Camera& camera) {
+  if (o.fov) {
+    // Keeps the subject's size: a wider angle from nearer.
+    const float nearer = std::tan(camera.fov_y / 2) / std::tan(*o.fov * kDegree / 2);
+    if (o.eye.empty()) camera.eye = camera.target + (camera.eye - camera.target) * nearer;
+    camera.fov_y = *o.fov * kDegree;
+  }
+  if (o.orthographic) camera.projection = Camera::Projection::kOrthographic;
+  if (!o.eye.empty()) camera.eye = vector(o.eye);
+  if (!o.target.empty()) camera.target = vector(o.target);
+  if (o.turn) turn(camera, *o.turn);
+}
+
+void apply_environment(const RenderOptions& o, Environment& environment) {
+  if (o.environment) {
+    environment.map = std::make_shared<Image>(read_image(*o.environment));
+    if (environment.map->channel_count() < 3) throw Error(*o.environment, "", "the image has no red, green and blue", "");
+    environment.radiance = {1, 1, 1};
+  }
+  if (o.environment_rotation) environment.rotation = *o.environment_rotation * kDegree;
+  if (o.environment_visible) environment.visible = true;
+}
+
+}  // namespace
+
+Scene make_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes) {
+  Scene scene;
+  const bool from_file = is_scene_file(options.input);
+  if (from_file) {
+    scene = read_scene(options.input, progress);
+    for (const std::string& path : options.meshes)
+      scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(read_mesh(path, options.scale.value_or(1.f)));
+    apply_settings(options, scene.settings);
+  } else {
+    apply_settings(options, scene.settings);  // before the camera, which frames for the picture's shape
+    read_groom_scene(options, progress, notes, scene);
+    add_default_camera(scene);
+  }
+  apply_camera(options, scene.camera);
+  if (!from_file && options.lights.empty() && !options.environment) add_default_lights(scene);
+  if (!options.lights.empty()) scene.lights.clear();
+  for (const std::string& light : options.lights) scene.lights.push_back(parse_light(light));
+  apply_environment(options, scene.environment);
+  for (GroomInstance& groom : scene.grooms) {
+    apply_material(options, groom.material);
+    if (options.width_scale) groom.width_scale *= *options.width_scale;
+  }
+  return scene;
+}
+
+}  // namespace pelage::cli

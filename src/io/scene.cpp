@@ -1,0 +1,118 @@
+// Scene files: what the JSON says, then what it names.
+#include <fmt/format.h>
+#include <pelage/error.h>
+#include <pelage/grow.h>
+#include <pelage/io.h>
+
+#include <filesystem>
+
+#include "core/nearest.h"
+#include "io/byte_source.h"
+#include "io/scene_tables.h"
+
+namespace pelage {
+namespace {
+
+using namespace io;
+
+// Loads what a scene file names, and tells an error there with the scene file's name in front.
+class Loader {
+ public:
+  Loader(const std::string& path, const Progress& progress)
+      : path_(path), folder_(std::filesystem::path(path).parent_path()), progress_(progress) {}
+
+  Scene load(const SceneText& text) {
+    Scene scene;
+    scene.settings = text.settings;
+    for (std::size_t i = 0; i < text.meshes.size(); ++i) scene.meshes.push_back(load_mesh(text.meshes[i], i));
+    for (std::size_t i = 0; i < text.grooms.size(); ++i) scene.grooms.push_back(load_groom(text.grooms[i], i, scene.meshes));
+    if (text.camera) scene.camera = *text.camera;
+    else add_default_camera(scene);
+    if (!text.lights && !text.environment) add_default_lights(scene);
+    if (text.environment) scene.environment = load_environment(*text.environment);
+    if (text.lights)
+      for (std::size_t i = 0; i < text.lights->size(); ++i) scene.lights.push_back(checked_light((*text.lights)[i], i));
+    return scene;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& place, const std::string& problem, const std::string& remedy) const {
+    throw Error(path_, place, problem, remedy);
+  }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+  void require_one(const std::string& place, const char* a, bool has_a, const char* b, bool has_b) const {
+    if (has_a != has_b) return;
+    fail(place, fmt::format("{} `{}` and `{}`", has_a ? "both" : "neither", a, b), "give exactly one of them");
+  }
+
+  MeshInstance load_mesh(const MeshText& text, std::size_t i) const {
+    const std::string place = fmt::format("/meshes/{}", i);
+    require_one(place, "file", !text.file.empty(), "shape", !text.shape.empty());
+    if (!text.shape.empty() && text.shape != "mannequin")
+      fail(place + "/shape", fmt::format("unknown value `{}`", text.shape), "did you mean `mannequin`?");
+    MeshInstance mesh = text.instance;
+    mesh.mesh = std::make_shared<TriangleMesh>(text.file.empty() ? mannequin_head() : read_mesh(file(text.file), text.scale, text.up));
+    if (!text.texture.empty()) mesh.texture = std::make_shared<Image>(read_image(file(text.texture)));
+    mesh.transform = to_affine(text.transform);
+    return mesh;
+  }
+
+  GroomInstance load_groom(const GroomText& text, std::size_t i, const std::vector<MeshInstance>& meshes) const {
+    const std::string place = fmt::format("/grooms/{}", i);
+    require_one(place, "file", !text.file.empty(), "grow", text.grow.has_value());
+    GroomInstance groom = text.instance;
+    groom.transform = to_affine(text.transform);
+    groom.strands = std::make_shared<StrandSet>(
+        text.grow ? grow(text.grow->settings, surface(text.grow->surface, place, meshes), progress_)
+                  : read_strands(file(text.file), text.import, nullptr, progress_));
+    return groom;
+  }
+
+  TriangleMesh surface(const std::string& name, const std::string& place, const std::vector<MeshInstance>& meshes) const {
+    std::vector<std::string> known{"mannequin"};
+    for (const MeshInstance& mesh : meshes) {
+      if (mesh.name == name) return *mesh.mesh;
+      known.push_back(mesh.name);
+    }
+    if (name != "mannequin")
+      fail(place + "/grow/surface", fmt::format("no mesh has the name `{}`", name), fmt::format("did you mean `{}`?", nearest_name(name, known)));
+    return mannequin_head();
+  }
+
+  Environment load_environment(const EnvironmentText& text) const {
+    Environment environment = text.environment;
+    if (text.map.empty()) return environment;
+    environment.map = std::make_shared<Image>(read_image(file(text.map)));
+    if (environment.map->channel_count() < 3) fail("/environment/map", "the image has no red, green and blue", "");
+    return environment;
+  }
+
+  Light checked_light(Light light, std::size_t i) const {
+    const std::string place = fmt::format("/lights/{}", i);
+    if (light.type != Light::Type::kPoint && !(length(light.direction) > 0)) fail(place + "/direction", "no direction", "");
+    if (light.type == Light::Type::kSpot && light.outer_angle <= light.inner_angle)
+      fail(place + "/outer_angle", "not greater than inner_angle", "");
+    light.direction = normalize(light.direction);
+    return light;
+  }
+
+  std::string path_;
+  std::filesystem::path folder_;
+  Progress progress_;
+};
+
+}  // namespace
+
+Scene read_scene(const std::string& path, const Progress& progress) {
+  constexpr std::uint64_t kMostBytes = 64u << 20;
+  const ByteSource source = ByteSource::open(path);
+  if (source.size() == 0) throw Error(path, "", "the file is empty", "a scene file is a JSON object");
+  if (source.size() > kMostBytes) throw Error(path, "", "more than 64 MiB of JSON", "grooms stand in files of their own");
+  const JsonDocument document(path, source.read_all());
+  SceneText text;
+  read_object(JsonValue(document), scene_fields(), text);
+  return Loader(path, progress).load(text);
+}
+
+}  // namespace pelage

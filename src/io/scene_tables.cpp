@@ -1,0 +1,250 @@
+// The keys of a scene file: names, units, ranges and what they set. Lengths in metres, angles in degrees.
+#include "io/scene_tables.h"
+
+#include <cmath>
+
+namespace pelage::io {
+namespace {
+
+constexpr double kFar = 1e6;        // metres
+constexpr double kBright = 1e9;
+constexpr double kDegree = 3.14159265358979 / 180;
+
+// A field of an object that may be absent as a whole.
+template <class T, class U>
+Field<T> optional_object_field(std::string key, const char* about, std::optional<U> T::*member, const Fields<U>& fields) {
+  Schema schema = object_schema(fields);
+  schema["description"] = about;
+  return {std::move(key), std::move(schema),
+          [=, &fields](const JsonValue& v, T& out) { read_object(v, fields, (out.*member).emplace()); }};
+}
+
+// The same field for a part of a larger struct.
+template <class T, class U>
+Field<T> nested(U T::*part, Field<U> field) {
+  return {std::move(field.key), std::move(field.schema),
+          [part, read = std::move(field.read)](const JsonValue& v, T& out) { read(v, out.*part); }, field.is_required};
+}
+
+const Fields<Camera>& camera_fields() {
+  static const Names<Camera::Projection> projections{{"perspective", Camera::Projection::kPerspective},
+                                                     {"orthographic", Camera::Projection::kOrthographic}};
+  static const Fields<Camera> table{
+      choice_field("projection", "How the camera projects", &Camera::projection, projections),
+      vector_field("eye", "Where the camera stands, meters", &Camera::eye, -kFar, kFar).required(),
+      vector_field("target", "What it looks at, meters", &Camera::target, -kFar, kFar).required(),
+      vector_field("up", "Which way is up in the picture", &Camera::up, -kFar, kFar),
+      number_field("fov", "Full vertical angle of the perspective camera, degrees", &Camera::fov_y, 0.01, 179, kDegree),
+      number_field("height", "Full vertical extent of the orthographic camera, meters", &Camera::height, 1e-6, kFar),
+      number_field("near", "Nearer things are clipped, meters", &Camera::near_plane, 1e-6, kFar),
+  };
+  return table;
+}
+
+const Fields<Light>& light_fields() {
+  static const Names<Light::Type> types{
+      {"point", Light::Type::kPoint}, {"spot", Light::Type::kSpot}, {"directional", Light::Type::kDirectional}};
+  static const Fields<Light> table{
+      choice_field("type", "Kind of light", &Light::type, types).required(),
+      text_field("name", "For people", &Light::name),
+      vector_field("position", "Point and spot lights: meters", &Light::position, -kFar, kFar),
+      vector_field("direction", "Spot and directional lights: where the light travels; any length but zero",
+                   &Light::direction, -kFar, kFar),
+      vector_field("intensity", "RGB; point and spot: W/sr; directional: irradiance, W/m²", &Light::intensity, 0, kBright),
+      number_field("inner_angle", "Spot: degrees from the axis up to which it is full", &Light::inner_angle, 0, 89, kDegree),
+      number_field("outer_angle", "Spot: degrees from the axis from which it is dark", &Light::outer_angle, 0.01, 89.9, kDegree),
+      boolean_field("casts_shadow", "Whether hair and meshes shade this light", &Light::casts_shadow),
+  };
+  return table;
+}
+
+const Fields<EnvironmentText>& environment_fields() {
+  using E = Environment;
+  constexpr auto part = &EnvironmentText::environment;
+  static const Fields<EnvironmentText> table{
+      nested(part, vector_field("radiance", "RGB, W/(m²·sr); multiplies the map where there is one", &E::radiance, 0, kBright)),
+      text_field("map", "Latitude-longitude image file, relative to the scene file; top row up, middle column −Z",
+                 &EnvironmentText::map),
+      nested(part, number_field("rotation", "Degrees about +Y, counter-clockwise from above", &E::rotation, -3600, 3600, kDegree)),
+      nested(part, boolean_field("visible", "Shown behind the scene instead of the background color", &E::visible)),
+  };
+  return table;
+}
+
+const Fields<TransformText>& transform_fields() {
+  static const Fields<TransformText> table{
+      vector_field("translate", "Meters, after rotation and scale", &TransformText::translate, -kFar, kFar),
+      vector_field("rotate", "Degrees about X, then Y, then Z", &TransformText::rotate, -3600, 3600),
+      number_field("scale", "One factor for all axes", &TransformText::scale, 1e-9, 1e9),
+  };
+  return table;
+}
+
+const Names<UpAxis> kUpAxes{{"auto", UpAxis::kAuto}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}};
+
+const Fields<MeshText>& mesh_fields() {
+  using M = MeshInstance;
+  constexpr auto part = &MeshText::instance;
+  static const Names<UpAxis> up_axes(kUpAxes.begin() + 1, kUpAxes.end());
+  static const Fields<MeshText> table{
+      nested(part, text_field("name", "By which grooms may refer to it", &M::name)),
+      text_field("file", "OBJ, PLY or glb, relative to the scene file", &MeshText::file),
+      text_field("shape", "Made by code instead of a file: \"mannequin\"", &MeshText::shape),
+      number_field("scale", "Meters per unit of the file", &MeshText::scale, 1e-9, 1e9),
+      choice_field("up", "Which axis of the file points up", &MeshText::up, up_axes),
+      text_field("texture", "Color image, relative to the scene file; multiplies the color", &MeshText::texture),
+      nested(part, vector_field("color", "Linear diffuse reflectance", &M::color, 0, 1)),
+      nested(part, number_field("specular", "Reflectance at normal incidence", &M::specular, 0, 1)),
+      nested(part, number_field("roughness", "GGX α", &M::roughness, 0.001, 1)),
+      object_field("transform", "Object to world", &MeshText::transform, transform_fields()),
+  };
+  return table;
+}
+
+const Fields<GrowText>& grow_fields() {
+  using G = GrowSettings;
+  constexpr auto part = &GrowText::settings;
+  static const Fields<GrowText> table{
+      // First in the table: sets the defaults that the other keys change.
+      {"style", {{"description", "Chooses the defaults of the other keys"}, {"enum", hair_style_names()}},
+       [](const JsonValue& v, GrowText& out) {
+         choice_index(v, hair_style_names());
+         out.settings = grow_defaults(hair_style_from_name(v.text()));
+       }, true},
+      text_field("surface", "\"mannequin\", or the name of a mesh of the scene", &GrowText::surface),
+      nested(part, integer_field("seed", "Another seed, another head of hair", &G::seed, 0, INT64_MAX)),
+      nested(part, integer_field("strands", "Number of strands", &G::strands, 1, 1000000)),
+      nested(part, integer_field("points", "Control points per strand", &G::points, 4, 1024)),
+      nested(part, number_field("length", "Of the longest strands, meters", &G::length, 1e-4, 10)),
+      nested(part, number_field("length_variation", "Standard deviation as a share of the length", &G::length_variation, 0, 1)),
+      nested(part, number_field("width", "Diameter at the root, meters", &G::width, 1e-7, 0.1)),
+      nested(part, number_field("width_variation", "Standard deviation as a share of the width", &G::width_variation, 0, 1)),
+      nested(part, number_field("taper", "Share of the width that is gone at the tip", &G::taper, 0, 1)),
+      nested(part, number_field("curl_radius", "Of the helix or wave, meters", &G::curl_radius, 0, 1)),
+      nested(part, number_field("curl_pitch", "Length of one turn, meters", &G::curl_pitch, 1e-4, 10)),
+      nested(part, integer_field("clumps", "Number of clumps; 0 none", &G::clumps, 0, 1000000)),
+      nested(part, number_field("clump_tightness", "0 none … 1 tips meet", &G::clump_tightness, 0, 1)),
+      nested(part, number_field("frizz", "Small-scale noise", &G::frizz, 0, 1)),
+      nested(part, number_field("flyaways", "Share of strands that leave their clump", &G::flyaways, 0, 1)),
+      nested(part, number_field("gravity", "0 stands, 1 hangs", &G::gravity, 0, 1)),
+  };
+  return table;
+}
+
+const Fields<HairMaterial>& material_fields() {
+  using M = HairMaterial;
+  static const Names<M::Model> models{{"kajiya-kay", M::Model::kKajiyaKay}, {"marschner", M::Model::kMarschner}, {"zhu", M::Model::kZhu}};
+  static const Names<M::ColorSource> sources{
+      {"melanin", M::ColorSource::kMelanin}, {"rgb", M::ColorSource::kRgb}, {"strand", M::ColorSource::kStrand}};
+  Field<M> color = vector_field("color", "Linear color of a dense tuft; sets color_source to rgb", &M::color, 0, 1);
+  color.read = [read = color.read](const JsonValue& v, M& out) {
+    read(v, out);
+    out.color_source = M::ColorSource::kRgb;
+  };
+  static const Fields<M> table{
+      choice_field("model", "Single-fiber scattering", &M::model, models),
+      std::move(color),
+      choice_field("color_source", "Where the color of the hair comes from", &M::color_source, sources),
+      number_field("eumelanin", "Concentration; 0.1 blond, 0.5 light brown, 1.3 brown, 8 black", &M::eumelanin, 0, 100),
+      number_field("pheomelanin", "Concentration; red hair 1 and more", &M::pheomelanin, 0, 100),
+      number_field("eta", "Index of refraction", &M::eta, 1.01, 3),
+      number_field("beta_longitudinal", "Degrees, standard deviation of the R lobe", &M::beta_longitudinal, 0.5, 60, kDegree),
+      number_field("beta_azimuthal", "Degrees, standard deviation of the TT lobe", &M::beta_azimuthal, 0.5, 90, kDegree),
+      number_field("cuticle_tilt", "Degrees", &M::cuticle_tilt, 0, 15, kDegree),
+      number_field("specular_gain", "Multiplies the R lobe; 1 is physical", &M::specular_gain, 0, 100),
+  };
+  return table;
+}
+
+const Fields<GroomText>& groom_fields() {
+  using G = GroomInstance;
+  constexpr auto part = &GroomText::instance;
+  static const Fields<GroomText> table{
+      nested(part, text_field("name", "For people", &G::name)),
+      text_field("file", "Groom file, relative to the scene file", &GroomText::file),
+      optional_object_field("grow", "Made from a seed instead of a file", &GroomText::grow, grow_fields()),
+      nested(&GroomText::import, number_field("scale", "Meters per unit of the file; guessed without it", &ImportOptions::scale, 1e-9, 1e9)),
+      nested(&GroomText::import, choice_field("up", "Which axis of the file points up", &ImportOptions::up, kUpAxes)),
+      nested(&GroomText::import, number_field("default_width", "Meters, for files without widths", &ImportOptions::default_width, 1e-7, 0.1)),
+      nested(part, object_field("material", "How a strand scatters light", &G::material, material_fields())),
+      object_field("transform", "Object to world", &GroomText::transform, transform_fields()),
+      nested(part, number_field("width_scale", "Multiplies every width", &G::width_scale, 1e-6, 1e6)),
+  };
+  return table;
+}
+
+const Fields<RenderSettings>& settings_fields() {
+  using S = RenderSettings;
+  static const Names<AlphaSource> alphas{{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}};
+  static const Names<View> views{{"beauty", View::kBeauty}, {"strand-id", View::kStrandId}, {"u", View::kU},
+                                 {"tangent", View::kTangent}, {"depth", View::kDepth}, {"coverage", View::kCoverage},
+                                 {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo}};
+  static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};
+  static const Fields<S> table{
+      integer_field("width", "Pixels", &S::width, 1, 16384),
+      integer_field("height", "Pixels", &S::height, 1, 16384),
+      {"samples", {{"description", "Per pixel"}, {"enum", {1, 2, 4, 8, 16}}},
+       [](const JsonValue& v, S& out) {
+         const long long n = v.integer(1, 16);
+         if (n & (n - 1)) v.fail(std::to_string(n) + " samples per pixel", "1, 2, 4, 8 or 16");
+         out.samples = static_cast<int>(n);
+       }},
+      choice_field("alpha", "Opacity: share of covered samples, or exact area", &S::alpha, alphas),
+      choice_field("view", "What the picture shows", &S::view, views),
+      number_field("exposure", "Stops", &S::exposure, -100, 100),
+      choice_field("tone_map", "Curve of the display picture", &S::tone_map, tone_maps),
+      vector_field("background", "Linear color where nothing is hit", &S::background, 0, kBright),
+      boolean_field("transparent_background", "Keep alpha instead of the background", &S::transparent_background),
+      integer_field("subdivisions", "Segments per span; 0 chooses from the projected curvature", &S::subdivisions, 0, 64),
+      boolean_field("shadows", "Whether hair and meshes shade", &S::shadows),
+      boolean_field("dual_scattering", "Multiple scattering between strands", &S::dual_scattering),
+      integer_field("opacity_map_size", "Texels a side", &S::opacity_map_size, 64, 4096),
+  };
+  return table;
+}
+
+}  // namespace
+
+const Fields<SceneText>& scene_fields() {
+  static const Fields<SceneText> table{
+      text_field("$schema", "For editors", &SceneText::schema),
+      optional_object_field("camera", "Frames the grooms when absent", &SceneText::camera, camera_fields()),
+      {"lights", {{"description", "A three-point light when neither lights nor environment are given"}, {"type", "array"}, {"items", object_schema(light_fields())}},
+       [](const JsonValue& v, SceneText& out) {
+         out.lights.emplace();
+         for (const JsonValue& light : v.elements()) read_object(light, light_fields(), out.lights->emplace_back());
+       }},
+      optional_object_field("environment", "Light from far away", &SceneText::environment, environment_fields()),
+      list_field("meshes", "Opaque geometry", &SceneText::meshes, mesh_fields()),
+      list_field("grooms", "Hair and fur", &SceneText::grooms, groom_fields()),
+      object_field("settings", "How the picture is made", &SceneText::settings, settings_fields()),
+  };
+  return table;
+}
+
+std::string scene_schema() {
+  Schema schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                {"title", "Pelage scene"},
+                {"description", "Lengths in meters, angles in degrees, Y up, right-handed. Made by `pelage render --schema`."}};
+  schema.update(object_schema(scene_fields()));
+  return schema.dump(2) + "\n";
+}
+
+Affine to_affine(const TransformText& t) {
+  const auto angle = [](float degrees) { return static_cast<double>(degrees) * kDegree; };
+  const double cx = std::cos(angle(t.rotate.x)), sx = std::sin(angle(t.rotate.x));
+  const double cy = std::cos(angle(t.rotate.y)), sy = std::sin(angle(t.rotate.y));
+  const double cz = std::cos(angle(t.rotate.z)), sz = std::sin(angle(t.rotate.z));
+  const double r[3][3] = {{cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx},
+                          {sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx},
+                          {-sy, cy * sx, cy * cx}};
+  const float move[3] = {t.translate.x, t.translate.y, t.translate.z};
+  Affine a;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) a.m[i][j] = static_cast<float>(r[i][j] * t.scale);
+    a.m[i][3] = move[i];
+  }
+  return a;
+}
+
+}  // namespace pelage::io
