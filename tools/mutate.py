@@ -22,7 +22,7 @@ ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), 
 COPY = os.path.join(ROOT, "build", "mutate", "tree")
 
 # Tests that state what a topic's formulas have to give, by ctest name. Parity is of no use: it breaks all targets alike.
-TESTS = {"math": "kernel_math", "curve": "assemble", "scatter": "scatter", "raster": "raster", "light": "light", "shade": "shade",
+TESTS = {"math": "kernel_math", "curve": "kernel_curve", "scatter": "scatter", "raster": "raster", "light": "light", "shade": "shade",
          "composite": "tonemap"}
 
 SWAPS = [

@@ -9,6 +9,7 @@ const float kLogMaxAbsError = 4.0e-7f;     // relative to max(1, |log x|); x pos
 const float kSinCosMaxAbsError = 2.0e-7f;  // |x| <= 100
 const float kAsinMaxAbsError = 4.0e-7f;    // x in [-1, 1]; also m_acos
 const float kAtan2MaxAbsError = 4.0e-7f;   // any x, y but both zero
+const float kPowMaxRelError = 5.0e-7f;     // times max(1, |y log x|); x in [1e-6, 1e6], result in [1e-30, 1e30]
 
 const float kPi = 3.14159265358979f;
 const float kHalfPi = 1.57079632679490f;
@@ -52,7 +53,7 @@ PELAGE_FN Float m_log(Float x0) {
   return (r + y) + e * Float(0.693359375f);
 }
 
-// x^y for x > 0; relative error grows with |y log x|. 0 for x <= 0.
+// x^y for x > 0, 0 for x <= 0. Error: kPowMaxRelError, growing with |y log x|.
 PELAGE_FN Float m_pow(Float x, Float y) {
   return select(x > Float(0.0f), m_exp(y * m_log(x)), Float(0.0f));
 }

@@ -30,6 +30,28 @@ TEST(Elementary, LogWithinItsBound) {
   });
 }
 
+TEST(Elementary, PowerWithinItsBound) {
+  for (const float y : {-4.5f, -1.0f, 0.0f, 0.25f, 1.0f, 2.2f, 5.0f})
+    sweep(-6, 6, [y](float e) {
+      const float x = std::pow(10.0f, e);
+      const double exact = std::pow(static_cast<double>(x), static_cast<double>(y));
+      const double scale = std::max(1.0, std::fabs(y * std::log(static_cast<double>(x))));
+      if (exact < 1e-30 || exact > 1e30) return;
+      ASSERT_LE(std::fabs(m_pow(x, y) - exact) / exact, kPowMaxRelError * scale) << x << " " << y;
+    });
+  EXPECT_EQ(m_pow(0, 2), 0);
+  EXPECT_EQ(m_pow(-3, 2), 0);
+}
+
+TEST(Elementary, ExtremesStayFinite) {
+  EXPECT_EQ(m_exp(1000), m_exp(88));
+  EXPECT_EQ(m_exp(-1000), m_exp(-87));
+  EXPECT_GT(m_exp(-1000), 0);
+  EXPECT_EQ(m_log(0), m_log(1.17549435e-38f));
+  EXPECT_EQ(m_asin(1.5f), m_asin(1));
+  EXPECT_EQ(m_asin(-1.5f), m_asin(-1));
+}
+
 TEST(Elementary, SineAndCosineWithinTheirBound) {
   sweep(-100, 100, [](float x) {
     ASSERT_LE(std::fabs(m_sin(x) - std::sin(static_cast<double>(x))), kSinCosMaxAbsError) << x;
