@@ -9,6 +9,7 @@
 #include "frame/segment_lookup.h"
 #include "raster/band_walk.h"
 #include "raster/keys.h"
+#include "raster/sample_positions.h"
 
 namespace pelage::bench {
 
@@ -80,9 +81,9 @@ inline void naive_caps(std::vector<NaivePoint>& points) {
   }
 }
 
-/// Calls emit(x, y, depth, id) for every pixel of every strand of `job` whose point at `at` is covered.
-template <class Emit>
-void naive_walk(const AssembleJob& job, Vec2 at, const Emit& emit) {
+/// Calls visit(band, id) for every segment of `job`, in parallel.
+template <class Visit>
+void naive_bands(const AssembleJob& job, const Visit& visit) {
   parallel_for(job.strands->strand_count(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<NaivePoint> points;
     for (std::size_t s = begin; s < end; ++s) {
@@ -91,19 +92,37 @@ void naive_walk(const AssembleJob& job, Vec2 at, const Emit& emit) {
       const std::uint32_t id = job.base_id + job.strands->offsets[s] * job.subdivisions;
       for (std::uint32_t j = 0; j + 1 < points.size(); ++j) {
         const NaivePoint &a = points[j], &b = points[j + 1];
-        const kernel::RasterBand band =
-            kernel::raster_band({a.x, a.y}, {b.x, b.y}, a.radius, b.radius, a.depth, b.depth, a.cap, b.cap);
-        walk_band(band, job.view.width, job.view.height, at, [&](int x, int y, float depth) { emit(x, y, depth, id + j); });
+        visit(kernel::raster_band({a.x, a.y}, {b.x, b.y}, a.radius, b.radius, a.depth, b.depth, a.cap, b.cap), id + j);
       }
     }
   });
 }
 
+inline std::size_t naive_pixel(const CameraView& view, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+}
+
 /// The center layer of one groom, into cleared `keys`.
 inline void naive_center(const AssembleJob& job, Buffer<PixelKey>& keys) {
-  const std::size_t width = static_cast<std::size_t>(job.view.width);
-  naive_walk(job, {0.5f, 0.5f}, [&](int x, int y, float depth, std::uint32_t id) {
-    atomic_min(keys[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)], pixel_key(depth, id));
+  const CameraView& view = job.view;
+  naive_bands(job, [&](const kernel::RasterBand& band, std::uint32_t id) {
+    walk_centers(band, view.width, view.height, [&](int x, int y, float depth) {
+      atomic_min(keys[naive_pixel(view, x, y)], pixel_key(depth, id));
+    });
+  });
+}
+
+/// A sample layer, into cleared `keys`.
+inline void naive_samples(const AssembleJob& job, int samples, Buffer<PixelKey>& keys) {
+  const CameraView& view = job.view;
+  const auto positions = sample_positions(samples);
+  naive_bands(job, [&](const kernel::RasterBand& band, std::uint32_t id) {
+    const auto emit = [&](int x, int y, float depth, std::uint32_t mask) {
+      PixelKey* const pixel = &keys[naive_pixel(view, x, y) * static_cast<std::size_t>(samples)];
+      for (int s = 0; s < samples; ++s)
+        if (mask >> s & 1) atomic_min(pixel[s], pixel_key(depth, id));
+    };
+    walk_samples(band, view.width, view.height, positions.data(), samples, emit);
   });
 }
 

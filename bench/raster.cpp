@@ -10,7 +10,6 @@
 #include "grooms.h"
 #include "naive_raster.h"
 #include "raster/gbuffer.h"
-#include "raster/sample_positions.h"
 
 namespace pelage::bench {
 namespace {
@@ -58,15 +57,9 @@ std::string check_center(Input& in) {
 }
 
 std::string check_samples(Input& in, int samples) {
-  const auto positions = sample_positions(samples);
   GBuffer g;
   clear_gbuffer(in.view, {.center = false, .samples = samples}, g);
-  const std::size_t width = static_cast<std::size_t>(in.view.width), count = static_cast<std::size_t>(samples);
-  for (std::size_t s = 0; s < count; ++s)
-    naive_walk(in.job, positions[s], [&](int x, int y, float depth, std::uint32_t id) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-      atomic_min(g.sample_keys[pixel * count + s], pixel_key(depth, id));
-    });
+  naive_samples(in.job, samples, g.sample_keys);
   in.fast({.center = false, .samples = samples});
   return compare(g.sample_keys, in.out.sample_keys);
 }

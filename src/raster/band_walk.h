@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "frame/frame.h"
 #include "kernel/scalar.h"
@@ -15,23 +16,54 @@ inline kernel::RasterBand band_at(const ScreenBlock& block, std::size_t j) {
                              {block.cap_x[j + 1], block.cap_y[j + 1]});
 }
 
-/// Calls emit(x, y, depth) for every pixel of a width × height image whose point at `at` (from the pixel's top left
-/// corner, 0…1) the band covers: a DDA along the major axis, rows of the minor axis inside.
+/// Calls emit(x, y, depth) for every pixel of a width × height image whose center the band covers: a DDA along the major
+/// axis, rows of the minor axis inside.
 template <class Emit>
-void walk_band(const kernel::RasterBand& band, int width, int height, Vec2 at, const Emit& emit) {
-  const float at_u = band.x_major ? at.x : at.y, at_v = band.x_major ? at.y : at.x;
+void walk_centers(const kernel::RasterBand& band, int width, int height, const Emit& emit) {
   const int columns = band.x_major ? width : height, rows = band.x_major ? height : width;
-  const int first = static_cast<int>(std::max(std::ceil(band.first - at_u), 0.f));
-  const int last = static_cast<int>(std::min(std::floor(band.last - at_u), static_cast<float>(columns - 1)));
+  const int first = static_cast<int>(std::max(std::ceil(band.first - 0.5f), 0.f));
+  const int last = static_cast<int>(std::min(std::floor(band.last - 0.5f), static_cast<float>(columns - 1)));
   for (int column = first; column <= last; ++column) {
-    const float u = static_cast<float>(column) + at_u, s = u - band.u;
+    const float u = static_cast<float>(column) + 0.5f, s = u - band.u;
     const float center = kernel::raster_band_center(band, s), half = kernel::raster_band_half(band, s);
-    const float lowest = (center - half) - at_v;  // ceil() of it is raster_first_row()
+    const float lowest = (center - half) - 0.5f;  // ceil() of it is raster_first_row()
     int row = static_cast<int>(lowest);
     row = std::max(row + (static_cast<float>(row) < lowest), 0);
-    for (; row < rows && kernel::raster_row_covered(static_cast<float>(row), at_v, center, half); ++row)
-      if (kernel::raster_between_caps(band, u, static_cast<float>(row) + at_v))
+    for (; row < rows && kernel::raster_row_covered(static_cast<float>(row), 0.5f, center, half); ++row)
+      if (kernel::raster_between_caps(band, u, static_cast<float>(row) + 0.5f))
         emit(band.x_major ? column : row, band.x_major ? row : column, kernel::raster_band_depth(band, s));
+  }
+}
+
+/// Calls emit(x, y, depth, mask) for every pixel of which the band covers samples; bit i of `mask` stands for the
+/// `count` ≤ 32 positions in turn.
+template <class Emit>
+void walk_samples(const kernel::RasterBand& band, int width, int height, const Vec2* positions, int count,
+                  const Emit& emit) {
+  const int columns = band.x_major ? width : height, rows = band.x_major ? height : width;
+  const int first = static_cast<int>(std::max(std::ceil(band.first - 1.f), 0.f));
+  const int last = static_cast<int>(std::min(std::floor(band.last), static_cast<float>(columns - 1)));
+  for (int column = first; column <= last; ++column) {
+    const float u = static_cast<float>(column) + 0.5f, s = u - band.u;
+    const float center = kernel::raster_band_center(band, s), half = kernel::raster_band_half(band, s);
+    const int lowest = static_cast<int>(std::max(kernel::raster_lowest_row(band, center, half), 0.f));
+    const int highest =
+        static_cast<int>(std::min(kernel::raster_highest_row(band, center, half), static_cast<float>(rows - 1)));
+    for (int row = lowest; row <= highest; ++row) {
+      const float v = static_cast<float>(row) + 0.5f;
+      const float side_a = kernel::raster_cap_side(band.cap_a, u, v, band.u, band.v);
+      const float side_b = kernel::raster_cap_side(band.cap_b, u, v, band.end_u, band.end_v);
+      std::uint32_t mask = 0;
+      for (int i = 0; i < count; ++i) {
+        const float x = positions[i].x - 0.5f, y = positions[i].y - 0.5f;
+        const float o_u = band.x_major ? x : y, o_v = band.x_major ? y : x;
+        if (kernel::raster_sample_covered(v - center, kernel::raster_sample_offset(band, o_u, o_v), half) &&
+            kernel::raster_sample_between_caps(band, side_a, side_b, u, o_u, o_v))
+          mask |= std::uint32_t{1} << i;
+      }
+      if (mask != 0)
+        emit(band.x_major ? column : row, band.x_major ? row : column, kernel::raster_band_depth(band, s), mask);
+    }
   }
 }
 

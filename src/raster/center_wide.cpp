@@ -18,13 +18,13 @@
 #include <hwy/highway.h>
 
 #include "kernel/wide-inl.h"
+#include "raster/segment_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pelage {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
 using wide::Float;
 using wide::Mask;
 using Ints = hn::Vec<wide::IntTag>;
@@ -34,16 +34,16 @@ const wide::FloatTag kFloat{};
 const wide::IntTag kInt{};
 const wide::UintTag kUint{};
 
-/// Bit l of the result tells whether lane l, of `bits` at `depth` bits, may pass the depth test of its key now.
-std::uint64_t passing(const std::uint32_t* place, Uints depth_bits, Mask used, const PixelKey* keys) {
+/// Bit l of the result tells whether fragment l may pass the depth test of its key as it is now.
+std::uint64_t passing(const std::uint32_t* pixel, Uints depth_bits, Mask used, const PixelKey* keys) {
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR
   HWY_ALIGN std::uint32_t now[hn::MaxLanes(wide::UintTag())];
   for (std::size_t l = 0; l < hn::Lanes(kUint); ++l)
-    now[l] = static_cast<std::uint32_t>(__atomic_load_n(keys + place[l], __ATOMIC_RELAXED) >> 32);
+    now[l] = static_cast<std::uint32_t>(__atomic_load_n(keys + pixel[l], __ATOMIC_RELAXED) >> 32);
   const Uints current = hn::Load(kUint, now);
 #else
   // Keys may change under the gather. A stale half is larger than the present one, and only lets more through.
-  const Ints index = hn::BitCast(kInt, hn::Add(hn::ShiftLeft<1>(hn::LoadU(kUint, place)), hn::Set(kUint, 1)));
+  const Ints index = hn::BitCast(kInt, hn::Add(hn::ShiftLeft<1>(hn::LoadU(kUint, pixel)), hn::Set(kUint, 1)));
   const Uints current = hn::GatherIndex(kUint, reinterpret_cast<const std::uint32_t*>(keys), index);
 #endif
   const auto behind = hn::Lt(current, depth_bits);
@@ -56,41 +56,31 @@ std::uint64_t passing(const std::uint32_t* place, Uints depth_bits, Mask used, c
 void Flush(FragmentBuffer& f, PixelKey* keys) {
   const std::size_t lanes = hn::Lanes(kUint), count = f.count;
   constexpr std::size_t kAhead = 64;
-  std::fill(&f.place[count], &f.place[count] + FragmentBuffer::kPadding, 0u);
-  for (std::size_t i = 0; i < count && i < kAhead; ++i) hwy::Prefetch(keys + f.place[i]);
+  std::fill(&f.pixel[count], &f.pixel[count] + FragmentBuffer::kPadding, 0u);
+  for (std::size_t i = 0; i < count && i < kAhead; ++i) hwy::Prefetch(keys + f.pixel[i]);
   for (std::size_t i = 0; i < count; i += lanes) {
-    for (std::size_t l = 0; l < lanes; ++l) hwy::Prefetch(keys + f.place[std::min(i + kAhead + l, count)]);
+    for (std::size_t l = 0; l < lanes; ++l) hwy::Prefetch(keys + f.pixel[std::min(i + kAhead + l, count)]);
     const Uints depth_bits = hn::BitCast(kUint, hn::LoadU(kFloat, &f.depth[i]));
     const Mask used{hn::FirstN(kFloat, count - i)};
-    for (std::uint64_t bits = passing(&f.place[i], depth_bits, used, keys); bits != 0; bits &= bits - 1) {
+    for (std::uint64_t bits = passing(&f.pixel[i], depth_bits, used, keys); bits != 0; bits &= bits - 1) {
       const std::size_t l = i + static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      atomic_min(keys[f.place[l]], pixel_key(f.depth[l], f.id[l]));
+      atomic_min(keys[f.pixel[l]], pixel_key(f.depth[l], f.id[l]));
     }
   }
   f.count = 0;
 }
 
-void append(FragmentBuffer& f, Mask m, Uints place, Float depth, Uints id) {
+void append(FragmentBuffer& f, Mask m, Uints pixel, Float depth, Uints id) {
   const auto mask = hn::RebindMask(kUint, m.m);
-  hn::StoreU(hn::Compress(place, mask), kUint, &f.place[f.count]);
+  hn::StoreU(hn::Compress(pixel, mask), kUint, &f.pixel[f.count]);
   hn::StoreU(hn::Compress(depth.v, m.m), kFloat, &f.depth[f.count]);
   hn::StoreU(hn::Compress(id, mask), kUint, &f.id[f.count]);
   f.count += hn::CountTrue(kUint, mask);
 }
 
-/// What the walk of one bunch of segments needs beside their bands.
-struct Lanes {
-  wide::RasterBand band;
-  Float column, last;        // current and last column; lanes with column > last are done
-  Float rows;                // of the minor axis
-  Uints column_step;         // places per column …
-  Uints row_step;            // … and per row
-  Uints id;
-};
-
 /// One column of each lane: appends the covered rows.
 template <bool kThin>
-HWY_INLINE void visit_column(const Lanes& w, Float column, FragmentBuffer& f) {
+HWY_INLINE void visit_column(const SegmentLanes& w, Float column, FragmentBuffer& f) {
   const wide::RasterBand& band = w.band;
   const Float half_pixel(0.5f);
   const Float u = column + half_pixel, s = u - band.u;
@@ -102,9 +92,7 @@ HWY_INLINE void visit_column(const Lanes& w, Float column, FragmentBuffer& f) {
   while (wide::any(open)) {
     const Mask covered = open && wide::raster_between_caps(band, u, row + half_pixel);
     if (wide::any(covered)) {
-      const Uints place = hn::Add(hn::Mul(hn::BitCast(kUint, hn::ConvertTo(kInt, column.v)), w.column_step),
-                                  hn::Mul(hn::BitCast(kUint, hn::ConvertTo(kInt, row.v)), w.row_step));
-      append(f, covered, place, wide::raster_band_depth(band, s), w.id);
+      append(f, covered, pixels_at(w, column, row), wide::raster_band_depth(band, s), w.id);
     }
     if (kThin) return;
     row = row + Float(1.0f);
@@ -112,36 +100,11 @@ HWY_INLINE void visit_column(const Lanes& w, Float column, FragmentBuffer& f) {
   }
 }
 
-/// Segments j … j + lanes − 1 of the block; false where none of them can cover a pixel's center.
-bool load_segments(const ScreenBlock& block, std::size_t j, int width, int height, Lanes& w) {
-  const Float x = wide::load(&block.x[j]), y = wide::load(&block.y[j]);
-  const Float next_x = wide::load(&block.x[j + 1]), next_y = wide::load(&block.y[j + 1]);
-  w.id = hn::LoadU(kUint, &block.id[j]);
-  w.band = wide::raster_band({x, y}, {next_x, next_y}, wide::load(&block.radius[j]), wide::load(&block.radius[j + 1]),
-                             wide::load(&block.depth[j]), wide::load(&block.depth[j + 1]),
-                             {wide::load(&block.cap_x[j]), wide::load(&block.cap_y[j])},
-                             {wide::load(&block.cap_x[j + 1]), wide::load(&block.cap_y[j + 1])});
-  const Float w_pixels(static_cast<float>(width)), h_pixels(static_cast<float>(height));
-  const Float columns = select(w.band.x_major, w_pixels, h_pixels);
-  w.rows = select(w.band.x_major, h_pixels, w_pixels);
-  w.column = max(ceil(w.band.first - Float(0.5f)), Float(0.0f));
-  w.last = min(floor(w.band.last - Float(0.5f)), columns - Float(1.0f));
-  const auto x_major = hn::RebindMask(kUint, w.band.x_major.m);
-  const Uints one = hn::Set(kUint, 1), line = hn::Set(kUint, static_cast<std::uint32_t>(width));
-  w.column_step = hn::IfThenElse(x_major, one, line);
-  w.row_step = hn::IfThenElse(x_major, line, one);
-  const Mask none{hn::RebindMask(kFloat, hn::Eq(w.id, hn::Set(kUint, ScreenBlock::kNoSegment)))};
-  const Mask used{hn::FirstN(kFloat, block.count - 1 - j)};
-  const Mask drawn = used && !none && w.column <= w.last;
-  w.last = select(drawn, w.last, Float(-1.0f));
-  return wide::any(drawn);
-}
-
 void Center(const ScreenBlock& block, int width, int height, FragmentBuffer& f, PixelKey* keys) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
-  Lanes w;
+  SegmentLanes w;
   for (std::size_t j = 0; j + 1 < block.count; j += lanes) {
-    if (!load_segments(block, j, width, height, w)) continue;
+    if (!load_segments(block, j, width, height, 0.5f, 0.5f, w)) continue;
     const Float at_end = wide::raster_band_half(w.band, w.band.end_u - w.band.u);
     const bool thin = !wide::any(max(w.band.half, at_end) >= Float(0.49f));
     Float column = w.column;

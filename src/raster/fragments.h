@@ -13,13 +13,18 @@ struct FragmentBuffer {
   static constexpr std::size_t kCapacity = 4096;
   static constexpr std::size_t kPadding = 64;
   std::size_t count = 0;
-  Buffer<std::uint32_t> place{kCapacity + kPadding};  ///< index into the layer: pixel, or pixel·samples + sample
+  Buffer<std::uint32_t> pixel{kCapacity + kPadding};  ///< y·width + x
   Buffer<float> depth{kCapacity + kPadding};          ///< metres
   Buffer<std::uint32_t> id{kCapacity + kPadding};     ///< segment
+  Buffer<std::uint32_t> mask{kCapacity + kPadding};   ///< bit s: sample s is covered; unused by the center layer
 };
 
 /// Walks the bands of `block`, many segments at a time, and enters what covers pixel centers into `keys`
 /// ([height·width], nearest wins). `fragments` is scratch of the calling thread.
 void raster_center(const ScreenBlock& block, int width, int height, FragmentBuffer& fragments, PixelKey* keys);
+
+/// The same for sample layers of 1, 2, 4, 8 or 16 samples a pixel; keys: [height·width·samples].
+void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments,
+                    PixelKey* keys);
 
 }  // namespace pelage

@@ -15,7 +15,6 @@
 #include "raster/fragments.h"
 #include "raster/gbuffer.h"
 #include "raster/keys.h"
-#include "raster/sample_positions.h"
 
 namespace pelage {
 
@@ -29,26 +28,23 @@ struct Worker {
   FragmentBuffer fragments;
 };
 
+void count_overdraw(const ScreenBlock& block, GBuffer& out) {
+  const std::size_t width = static_cast<std::size_t>(out.width);
+  for (std::size_t j = 0; j + 1 < block.count; ++j) {
+    if (block.id[j] == ScreenBlock::kNoSegment) continue;
+    walk_centers(band_at(block, j), out.width, out.height, [&](int x, int y, float) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+      std::atomic_ref(out.overdraw[pixel]).fetch_add(1, std::memory_order_relaxed);
+    });
+  }
+}
+
 void raster_block(Worker& worker, const RasterLayers& layers, GBuffer& out) {
   const ScreenBlock& block = worker.block;
   if (layers.center) raster_center(block, out.width, out.height, worker.fragments, out.center.data());
-  if (!layers.overdraw && layers.samples == 0) return;
-  const auto positions = sample_positions(layers.samples > 0 ? layers.samples : 1);
-  for (std::size_t j = 0; j + 1 < block.count; ++j) {
-    const std::uint32_t id = block.id[j];
-    if (id == ScreenBlock::kNoSegment) continue;
-    const kernel::RasterBand band = band_at(block, j);
-    if (layers.overdraw)
-      walk_band(band, out.width, out.height, {0.5f, 0.5f}, [&](int x, int y, float) {
-        const std::size_t pixel = static_cast<std::size_t>(y) * out.width + x;
-        std::atomic_ref(out.overdraw[pixel]).fetch_add(1, std::memory_order_relaxed);
-      });
-    for (int sample = 0; sample < layers.samples; ++sample)
-      walk_band(band, out.width, out.height, positions[sample], [&](int x, int y, float depth) {
-        const std::size_t pixel = static_cast<std::size_t>(y) * out.width + x;
-        atomic_min(out.sample_keys[pixel * layers.samples + sample], pixel_key(depth, id));
-      });
-  }
+  if (layers.samples > 0)
+    raster_samples(block, out.width, out.height, layers.samples, worker.fragments, out.sample_keys.data());
+  if (layers.overdraw) count_overdraw(block, out);
 }
 
 /// Tells progress from whichever thread gets there first, and passes a cancellation on.

@@ -67,10 +67,14 @@ PELAGE_FN Float raster_band_half(RasterBand r, Float s) { return r.half + s * r.
 PELAGE_FN Float raster_band_depth(RasterBand r, Float s) {
   return min(max(r.depth + s * r.depth_slope, r.depth_min), r.depth_max);
 }
+// Side of (u, v) on the cap of point (cap_u, cap_v): positive towards the strand's tip.
+PELAGE_FN Float raster_cap_side(Vec2 cap, Float u, Float v, Float cap_u, Float cap_v) {
+  return cap.x * (u - cap_u) + cap.y * (v - cap_v);
+}
 // Rule (2) at (u, v).
 PELAGE_FN Mask raster_between_caps(RasterBand r, Float u, Float v) {
-  Float side_a = r.cap_a.x * (u - r.u) + r.cap_a.y * (v - r.v);
-  Float side_b = r.cap_b.x * (u - r.end_u) + r.cap_b.y * (v - r.end_v);
+  Float side_a = raster_cap_side(r.cap_a, u, v, r.u, r.v);
+  Float side_b = raster_cap_side(r.cap_b, u, v, r.end_u, r.end_v);
   return (side_a >= Float(0.0f)) && (side_b < Float(0.0f));
 }
 
@@ -79,4 +83,34 @@ PELAGE_FN Mask raster_between_caps(RasterBand r, Float u, Float v) {
 PELAGE_FN Float raster_first_row(Float center, Float half, Float at) { return ceil((center - half) - at); }
 PELAGE_FN Mask raster_row_covered(Float row, Float at, Float center, Float half) {
   return (row + at) - center <= half;
+}
+
+// Samples of one pixel. They share the depth, the half height and the center line's height of the pixel's own center, c(s)
+// and h(s); a sample off by (o_u, o_v) from there is as far from the center line as
+//   d = ((row + 1/2) - c(s)) + (o_v - m o_u).
+// `offset` is the last bracket, the same for all pixels of a segment.
+PELAGE_FN Float raster_sample_offset(RasterBand r, Float o_u, Float o_v) { return o_v - r.slope * o_u; }
+PELAGE_FN Mask raster_sample_covered(Float above_center, Float offset, Float half) {
+  return abs(above_center + offset) <= half;
+}
+// Rows of a pixel column with center height c whose pixels the band may touch: from here ...
+PELAGE_FN Float raster_lowest_row(RasterBand r, Float center, Float half) {
+  return floor(center - (half + abs(r.slope) * Float(0.5f)));
+}
+// ... to here.
+PELAGE_FN Float raster_highest_row(RasterBand r, Float center, Float half) {
+  return floor(center + (half + abs(r.slope) * Float(0.5f)));
+}
+// Rules (2) and (3) of a sample, from the sides of its pixel's center (u, v).
+PELAGE_FN Mask raster_sample_between_caps(RasterBand r, Float side_a, Float side_b, Float u, Float o_u, Float o_v) {
+  Float at_a = side_a + (r.cap_a.x * o_u + r.cap_a.y * o_v);
+  Float at_b = side_b + (r.cap_b.x * o_u + r.cap_b.y * o_v);
+  return (at_a >= Float(0.0f)) && (at_b < Float(0.0f)) && (u + o_u >= r.first) && (u + o_u <= r.last);
+}
+// Whether the whole pixel around (u, v) keeps rules (2) and (3), with a margin for roundings.
+PELAGE_FN Mask raster_pixel_between_caps(RasterBand r, Float side_a, Float side_b, Float u) {
+  Float reach_a = (abs(r.cap_a.x) + abs(r.cap_a.y)) * Float(0.51f);
+  Float reach_b = (abs(r.cap_b.x) + abs(r.cap_b.y)) * Float(0.51f);
+  return (side_a >= reach_a) && (side_b < Float(0.0f) - reach_b) && (u - Float(0.51f) >= r.first) &&
+         (u + Float(0.51f) <= r.last);
 }

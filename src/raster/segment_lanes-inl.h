@@ -1,0 +1,69 @@
+// A bunch of segments, one per lane, on its walk along their major axes. Included once per instruction set.
+#if defined(PELAGE_SEGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PELAGE_SEGMENT_LANES_INL_H_
+#undef PELAGE_SEGMENT_LANES_INL_H_
+#else
+#define PELAGE_SEGMENT_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "frame/frame.h"
+#include "kernel/wide-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelage {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+struct SegmentLanes {
+  wide::RasterBand band;
+  wide::Float column, last;            // current and last column; a lane with column > last is done
+  wide::Float rows;                    // of the minor axis
+  hn::Vec<wide::UintTag> column_step;  // pixels per column …
+  hn::Vec<wide::UintTag> row_step;     // … and per row
+  hn::Vec<wide::UintTag> id;
+};
+
+/// Segments j … j + lanes − 1 of the block, which cross columns whose points at `at` … `at_last` (0…1 from their lower
+/// side) their bands may reach; false where none crosses any.
+HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width, int height, float at, float at_last,
+                              SegmentLanes& w) {
+  const wide::UintTag uint_tag;
+  const auto pair = [&](const Buffer<float>& a, const Buffer<float>& b, std::size_t i) {
+    return wide::Vec2(wide::load(&a[i]), wide::load(&b[i]));
+  };
+  w.id = hn::LoadU(uint_tag, &block.id[j]);
+  w.band = wide::raster_band(pair(block.x, block.y, j), pair(block.x, block.y, j + 1), wide::load(&block.radius[j]),
+                             wide::load(&block.radius[j + 1]), wide::load(&block.depth[j]),
+                             wide::load(&block.depth[j + 1]), pair(block.cap_x, block.cap_y, j),
+                             pair(block.cap_x, block.cap_y, j + 1));
+  const wide::Float w_pixels(static_cast<float>(width)), h_pixels(static_cast<float>(height));
+  const wide::Float columns = select(w.band.x_major, w_pixels, h_pixels);
+  w.rows = select(w.band.x_major, h_pixels, w_pixels);
+  w.column = max(ceil(w.band.first - wide::Float(at_last)), wide::Float(0.0f));
+  w.last = min(floor(w.band.last - wide::Float(at)), columns - wide::Float(1.0f));
+  const auto x_major = hn::RebindMask(uint_tag, w.band.x_major.m);
+  const auto one = hn::Set(uint_tag, 1), line = hn::Set(uint_tag, static_cast<std::uint32_t>(width));
+  w.column_step = hn::IfThenElse(x_major, one, line);
+  w.row_step = hn::IfThenElse(x_major, line, one);
+  const wide::Mask none{hn::RebindMask(wide::kFloatTag, hn::Eq(w.id, hn::Set(uint_tag, ScreenBlock::kNoSegment)))};
+  const wide::Mask used{hn::FirstN(wide::kFloatTag, block.count - 1 - j)};
+  const wide::Mask drawn = used && !none && w.column <= w.last;
+  w.last = select(drawn, w.last, wide::Float(-1.0f));
+  return wide::any(drawn);
+}
+
+/// Index of the pixels at (column, row) of each lane.
+HWY_INLINE hn::Vec<wide::UintTag> pixels_at(const SegmentLanes& w, wide::Float column, wide::Float row) {
+  const wide::UintTag uint_tag;
+  const auto whole = [&](wide::Float f) { return hn::BitCast(uint_tag, hn::ConvertTo(wide::IntTag(), f.v)); };
+  return hn::Add(hn::Mul(whole(column), w.column_step), hn::Mul(whole(row), w.row_step));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pelage
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
