@@ -51,6 +51,12 @@ PELAGE_FN Vec4 parity_back(ScatterLobes l) {
   ScatterBack b = scatter_back(scatter_averages(l), l);
   return Vec4(b.a.x, b.a.z, b.cone.v, b.cone.shift);
 }
+// On a table that is linear in row and column, so that a cell chosen differently at an edge gives the same value.
+PELAGE_FN Float parity_table(Float cos_theta, Float sigma_a) {
+  ScatterTableCell c = scatter_table_cell(cos_theta, sigma_a);
+  Float v = c.index * Float(0.001f);
+  return scatter_table_mix(c, v, v + Float(0.001f), v + Float(0.065f), v + Float(0.066f));
+}
 PELAGE_FN Vec3 parity_local(ScatterLobes l, Float v, Float theta_i, Float cos_phi) {
   return scatter_dual_local(scatter_back(scatter_averages(l), l), v, m_sin(theta_i), m_cos(theta_i), cos_phi);
 }

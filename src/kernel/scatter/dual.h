@@ -4,6 +4,9 @@
 const float kDualDensity = 0.7f;  // d_f = d_b, Zinke 2008, section 4.1
 const float kBackEdgeSharpness = 6.0f;  // edge of the lit half circle: 10 to 90 % within 2.2/6 rad on both sides
 
+const float kDualAverageMaxAbsError = 6.0e-3f;    // a_f, a_b of scatter_averages against traced rays
+const float kAveragedPairMaxMisplaced = 0.035f;   // share of N^G's energy that the exact average has elsewhere
+
 struct ScatterAverages {
   Vec3 a_f;              // mean forward attenuation of a fiber
   Vec3 a_b;              // mean backward attenuation
@@ -19,7 +22,7 @@ struct ScatterBack {
   ScatterCone cone;      // its spread and shift, of the mean channel
 };
 
-// Averages over the front and back half circles of the lobes (Zinke 2008, eq. 6 and 12). `rest` is isotropic in azimuth.
+// Averages over the front and back half circles of the lobes (Zinke 2008, eq. 6). `rest` is isotropic in azimuth.
 PELAGE_FN ScatterAverages scatter_averages(ScatterLobes l) {
   ScatterAverages a;
   Vec3 half_rest = l.a_rest * Float(0.5f);
@@ -47,7 +50,7 @@ PELAGE_FN ScatterAverages scatter_averages(ScatterLobes l) {
 }
 
 // A_B of one channel: one (A_1) or three (A_3) backward events among any number of forward ones.
-// Zinke 2008, eq. 13 and 14.
+// Zinke 2008, eq. 11 to 14.
 PELAGE_FN Float scatter_back_energy(Float a_f, Float a_b) {
   Float f2 = a_f * a_f;
   Float k = Float(1.0f) / max(Float(1.0f) - f2, Float(1.0e-4f));
@@ -68,10 +71,11 @@ PELAGE_FN ScatterBack scatter_back(ScatterAverages m, ScatterLobes l) {
   Float k = Float(1.0f) / max(Float(1.0f) - f2, Float(1.0e-4f));
   Float shift = m.shift_b * (Float(1.0f) - Float(2.0f) * b2 * k * k) +
                 m.shift_f * (Float(2.0f) * k + Float(4.0f) * f2 * b2 * k * k * k);
+  // The formula is Zinke's, for deviations of theta_h: half of those of theta_i + theta_o.
   Float one = sqrt(Float(2.0f) * m.v_f + m.v_b);
   Float three = sqrt(Float(2.0f) * m.v_f + Float(3.0f) * m.v_b);
   Float sigma = (Float(1.0f) + Float(kDualDensity) * f2) * (one + b2 * three) /
-                (Float(1.0f) + b2 * (Float(2.0f) * sqrt(m.v_f) + Float(3.0f) * sqrt(m.v_b)));
+                (Float(1.0f) + b2 * (sqrt(m.v_f) + Float(1.5f) * sqrt(m.v_b)));
   shift = v_clamp(shift, -Float(kHalfPi), Float(kHalfPi));
   b.cone = scatter_cone(l.sin_o, l.cos_o, shift, sigma * sigma);
   return b;
@@ -88,16 +92,11 @@ PELAGE_FN Vec3 scatter_dual_transmittance(Float n, Vec3 a_f) {
   return (all - v_splat(direct)) * Float(kDualDensity);
 }
 
-// Variance that n hairs add to the light that comes through: n >= 1 of them took part. Zinke 2008, eq. 9.
+// Variance that n hairs add to the light that comes through: n >= 1 of them took part. Zinke 2008, section 3.1.
 PELAGE_FN Float scatter_dual_variance(Float n, Float v_f) { return max(n, Float(1.0f)) * v_f; }
 
 // A cone widened by the variance that the light brings along.
-PELAGE_FN ScatterCone scatter_cone_widened(ScatterCone c, Float v) {
-  ScatterCone w = c;
-  w.v = c.v + v;
-  w.norm = scatter_longitudinal_norm(w.v);
-  return w;
-}
+PELAGE_FN ScatterCone scatter_cone_widened(ScatterCone c, Float v) { return scatter_cone_with_variance(c, c.v + v); }
 
 // Sharpness of a pair's half circle: the logistic's slope at the edge equals the blurred pair's.
 PELAGE_FN Float scatter_pair_sharpness(ScatterPair n) {
@@ -111,7 +110,8 @@ PELAGE_FN Float scatter_reflection_averaged(Float cos_phi) {
   return Float(kInvTwoPi) * (Float(1.0f) + Float(0.424413182f) * cos_phi);
 }
 
-// f_F cos(theta_i): this fiber scatters light that other fibers scattered forward. Zinke 2008, eq. 21; Huang 2025, eq. 2.
+// f_F cos(theta_i): this fiber scatters light that other fibers scattered forward. Huang 2025, eq. 2
+// (references.bib: Huang2025LevelOfDetail).
 PELAGE_FN Vec3 scatter_dual_forward_marschner(ScatterLobes l, Float v, Float sin_i, Float cos_i, Float cos_phi) {
   Float r = scatter_cone_value(scatter_cone_widened(l.r, v), sin_i, cos_i) * l.a_r * scatter_reflection_averaged(cos_phi);
   Float tt = scatter_cone_value(scatter_cone_widened(l.tt, v), sin_i, cos_i) *
@@ -128,8 +128,9 @@ PELAGE_FN Vec3 scatter_dual_forward_zhu(ScatterLobes l, Float v, Float sin_i, Fl
 }
 
 // d_b f_B cos(theta_i): light that the hairs around and behind send back, on the lit half circle (soft edge).
-// v: variance that the light brings along, 0 for direct light. Zinke 2008, eq. 18; Huang 2025, eq. 3.
+// v: variance that the light brings along, 0 for direct light. Integral over the sphere: 2 d_b A_B.
+// Zinke 2008, eq. 9, 10 and 15; Huang 2025, eq. 3 leaves the 2 out (docs/derivations/dual_scattering.md tells why we do not).
 PELAGE_FN Vec3 scatter_dual_local(ScatterBack b, Float v, Float sin_i, Float cos_i, Float cos_phi) {
   Float m = scatter_cone_value(scatter_cone_widened(b.cone, v), sin_i, cos_i);
-  return b.a * (Float(kDualDensity) * m * scatter_half_circle(Float(kBackEdgeSharpness), cos_phi));
+  return b.a * (Float(2.0f * kDualDensity) * m * scatter_half_circle(Float(kBackEdgeSharpness), cos_phi));
 }

@@ -6,7 +6,10 @@ const float kI0eMaxRelError = 3.2e-4f;  // scatter_i0e, x >= 0
 
 // e^-x I0(x), x >= 0: a polynomial in t = 1/(1 + x/1.5) through the Chebyshev nodes of I0e(x) sqrt(1 + 2 pi x).
 PELAGE_FN Float scatter_i0e(Float x) {
-  Float t = Float(1.5f) / (x + Float(1.5f));
+  Float u = x + Float(1.5f);
+  Float w = Float(1.0f) + Float(kTwoPi) * x;
+  Float inv = Float(1.0f) / (u * w);
+  Float t = Float(1.5f) * w * inv;
   Float p = Float(-8.69952486f);
   p = p * t + Float(22.108249f);
   p = p * t - Float(11.8013518f);
@@ -16,38 +19,19 @@ PELAGE_FN Float scatter_i0e(Float x) {
   p = p * t + Float(0.825914743f);
   p = p * t + Float(0.10865494f);
   p = p * t + Float(1.00017506f);
-  return p / sqrt(Float(1.0f) + Float(kTwoPi) * x);
+  return p * sqrt(u * inv);
 }
 
 // Reflectance of a dielectric for unpolarized light; cosine of the angle of incidence in [0, 1], eta > 1.
 PELAGE_FN Float scatter_fresnel(Float cosine, Float eta) {
-  Float sin2 = Float(1.0f) - cosine * cosine;
-  Float cos_t = sqrt(Float(1.0f) - sin2 / (eta * eta));
-  Float parallel = (eta * cosine - cos_t) / (eta * cosine + cos_t);
-  Float perpendicular = (cosine - eta * cos_t) / (cosine + eta * cos_t);
-  return Float(0.5f) * (parallel * parallel + perpendicular * perpendicular);
-}
-
-// 1/(v (1 - e^(-2/v))): the factor of M that depends on the variance alone.
-PELAGE_FN Float scatter_longitudinal_norm(Float v) {
-  return Float(1.0f) / (v * (Float(1.0f) - m_exp(Float(-2.0f) / v)));
-}
-
-// M(theta_i, theta_o) without its exponential: d'Eon 2011, eq. 7, scaled by e^(...) so that nothing overflows
-// (references.bib: dEon2011Energy). Integral of M cos(theta_i) d theta_i = 1 for every theta_o and v.
-PELAGE_FN Float scatter_longitudinal_scale(Float cos_i, Float cos_o, Float v, Float norm) {
-  return norm * scatter_i0e(cos_i * cos_o / v);
-}
-// The exponent of M, (cos(theta_i + theta_o) - 1)/v <= 0, without cancellation where the sum is small.
-PELAGE_FN Float scatter_longitudinal_exponent(Float sin_i, Float cos_i, Float sin_o, Float cos_o, Float v) {
-  Float c = cos_i * cos_o - sin_i * sin_o;
-  Float s = sin_i * cos_o + cos_i * sin_o;
-  Float one_minus_c = select(c > Float(0.0f), s * s / (Float(1.0f) + abs(c)), Float(1.0f) - c);
-  return -(one_minus_c / v);
-}
-PELAGE_FN Float scatter_longitudinal(Float sin_i, Float cos_i, Float sin_o, Float cos_o, Float v) {
-  return scatter_longitudinal_scale(cos_i, cos_o, v, scatter_longitudinal_norm(v)) *
-         m_exp(scatter_longitudinal_exponent(sin_i, cos_i, sin_o, cos_o, v));
+  Float inv_eta2 = Float(1.0f) / (eta * eta);
+  Float cos_t = sqrt(Float(1.0f) - (Float(1.0f) - cosine * cosine) * inv_eta2);
+  Float a = eta * cosine;
+  Float b = eta * cos_t;
+  Float parallel = (a - cos_t) * (cosine + b);
+  Float perpendicular = (cosine - b) * (a + cos_t);
+  Float inv = Float(1.0f) / ((a + cos_t) * (cosine + b));
+  return Float(0.5f) * (parallel * parallel + perpendicular * perpendicular) * (inv * inv);
 }
 
 // Concentration of the von Mises distribution with mean resultant length r in [0, 1) (Banerjee 2005, eq. 4.4 with p = 2;
@@ -60,4 +44,43 @@ PELAGE_FN Float scatter_kappa(Float r, Float one_minus_r2) {
 // logistic(x) + logistic(-x) = 1. Negative sharpness: around phi = pi.
 PELAGE_FN Float scatter_half_circle(Float sharpness, Float cos_phi) {
   return Float(kInvPi) / (Float(1.0f) + m_exp(-(sharpness * cos_phi)));
+}
+
+// A longitudinal lobe as seen from theta_o: M(theta_i, theta_o - shift), d'Eon 2011 (references.bib: dEon2011Energy).
+// Integral of M cos(theta_i) d theta_i = 1 for every theta_o, shift and variance.
+struct ScatterCone {
+  Float sin_o;           // of theta_o - shift
+  Float cos_o;           // its absolute value: I0 is even
+  Float shift;           // where M peaks: theta_i + theta_o, radians
+  Float v;               // variance of theta_i + theta_o, radians^2
+  Float inv_v;
+  Float norm;            // 1/(v (1 - e^(-2/v)))
+};
+
+PELAGE_FN ScatterCone scatter_cone_with_variance(ScatterCone c0, Float v) {
+  ScatterCone c = c0;
+  c.v = v;
+  c.inv_v = Float(1.0f) / v;
+  c.norm = c.inv_v / (Float(1.0f) - m_exp(Float(-2.0f) * c.inv_v));
+  return c;
+}
+PELAGE_FN ScatterCone scatter_cone(Float sin_o, Float cos_o, Float shift, Float v) {
+  ScatterCone c;
+  Float s = m_sin(shift);
+  Float k = m_cos(shift);
+  c.sin_o = sin_o * k - cos_o * s;
+  c.cos_o = abs(cos_o * k + sin_o * s);
+  c.shift = shift;
+  return scatter_cone_with_variance(c, v);
+}
+// M = scale e^exponent, exponent <= 0: nothing overflows, and azimuthal lobes share the exponential.
+PELAGE_FN Float scatter_cone_scale(ScatterCone c, Float cos_i) { return c.norm * scatter_i0e(cos_i * c.cos_o * c.inv_v); }
+// (cos(theta_i + theta_o) - 1)/v as half the squared distance of two unit vectors: exact where it is small.
+PELAGE_FN Float scatter_cone_exponent(ScatterCone c, Float sin_i, Float cos_i) {
+  Float x = cos_i - c.cos_o;
+  Float y = sin_i + c.sin_o;
+  return Float(-0.5f) * c.inv_v * (x * x + y * y);
+}
+PELAGE_FN Float scatter_cone_value(ScatterCone c, Float sin_i, Float cos_i) {
+  return scatter_cone_scale(c, cos_i) * m_exp(scatter_cone_exponent(c, sin_i, cos_i));
 }

@@ -7,6 +7,7 @@
 // Derivations: docs/derivations/marschner.md.
 
 const float kLobeEnergyMaxAbsError = 4.5e-4f;  // a_r, a_tt, a_trt, a_rest against converged quadrature over h
+const float kPairMaxMisplaced = 0.075f;       // share of a pair's energy that the exact N has elsewhere; v_n >= (10 deg)^2
 
 struct ScatterFiber {
   Vec3 sigma_a;          // absorption per fiber radius, >= 0
@@ -17,15 +18,6 @@ struct ScatterFiber {
   Float v_trt;           //   of M_TRT
   Float v_n;             // variance of the azimuthal blur, radians^2; >= 0
   Float tilt;            // alpha, radians
-};
-
-// A longitudinal lobe with the view's inclination shifted by the cuticle tilt.
-struct ScatterCone {
-  Float sin_o;           // of theta_o - shift
-  Float cos_o;           // its absolute value: I0 is even
-  Float shift;           // where M peaks: theta_i + theta_o, radians
-  Float v;               // variance
-  Float norm;            // scatter_longitudinal_norm(v)
 };
 
 // An azimuthal lobe: two equal von Mises distributions at +mu and -mu (from phi = 0, or from phi = pi for TT).
@@ -71,19 +63,6 @@ PELAGE_FN ScatterFiber scatter_fiber(Float eta, Float beta_m, Float beta_n, Floa
   return f;
 }
 
-// The cone around theta_i + theta_o = shift: M(theta_i, theta_o - shift).
-PELAGE_FN ScatterCone scatter_cone(Float sin_o, Float cos_o, Float shift, Float v) {
-  ScatterCone c;
-  Float s = m_sin(shift);
-  Float k = m_cos(shift);
-  c.sin_o = sin_o * k - cos_o * s;
-  c.cos_o = abs(cos_o * k + sin_o * s);
-  c.shift = shift;
-  c.v = v;
-  c.norm = scatter_longitudinal_norm(v);
-  return c;
-}
-
 // Sums over the offset h across the fiber, on their way to ScatterLobes.
 struct ScatterSums {
   Float a_r;
@@ -92,7 +71,7 @@ struct ScatterSums {
   Vec3 a_rest;
   Float front_r;
   Vec3 tt;               // energy of TT over all channels times cos x, cos 2x, 1 - |x|/pi; x = exit angle from phi = pi
-  Vec3 trt;              // the same of TRT; x from phi = 0, last entry |x|/pi
+  Vec3 trt;              // the same of TRT; x from phi = 0, last entry |x|/pi; both after the blur by v_n
 };
 
 // One channel of one offset: (TT, TRT, rest) for the transmittance t of one crossing. Marschner 2003, eq. 8.
@@ -103,8 +82,9 @@ PELAGE_FN Vec3 scatter_attenuation(Float fresnel, Float t) {
 }
 
 // Adds the node h = sin(gamma_i) with weight w (which holds dh = cos(gamma_i) d gamma_i).
-// tau = sigma_a/cos(theta_t), inv_eta2 = 1/eta'^2 (Bravais), blur = 2 v_n/pi.
-PELAGE_FN ScatterSums scatter_add_offset(ScatterSums s, Float cos_o, Float eta, Vec3 tau, Float inv_eta2, Float blur,
+// tau = sigma_a/cos(theta_t), inv_eta2 = 1/eta'^2 (Bravais). The mean of |x| = acos(cos x) under a blur is close to
+// acos(rho cos x), rho = e^(-v_n/pi).
+PELAGE_FN ScatterSums scatter_add_offset(ScatterSums s, Float cos_o, Float eta, Vec3 tau, Float inv_eta2, Float rho,
                                          Float gamma, Float h, Float cos_i, Float w) {
   ScatterSums r = s;
   Float fresnel = scatter_fresnel(cos_o * cos_i, eta);
@@ -120,19 +100,16 @@ PELAGE_FN ScatterSums scatter_add_offset(ScatterSums s, Float cos_o, Float eta, 
   r.a_rest = s.a_rest + Vec3(cx.z, cy.z, cz.z) * w;
   r.front_r = s.front_r + w * fresnel * (gamma * Float(0.636619772367581f));
   // Exit angles (Marschner 2003, eq. 9): TT 2 gamma_t - 2 gamma_i + pi, TRT 4 gamma_t - 2 gamma_i + 2 pi.
-  Float gamma_t = m_asin(sin_t);
   Float half_tt = cos_t * cos_i + sin_t * h;
   Float c_tt = Float(2.0f) * half_tt * half_tt - Float(1.0f);
   Float half_trt = (Float(2.0f) * cos_t * cos_t - Float(1.0f)) * cos_i + Float(2.0f) * sin_t * cos_t * h;
   Float c_trt = Float(2.0f) * half_trt * half_trt - Float(1.0f);
-  Float x_tt = Float(2.0f) * (gamma - gamma_t);
-  Float x_trt = Float(4.0f) * gamma_t - Float(2.0f) * gamma;
-  Float d_tt = min(sqrt(x_tt * x_tt + blur) * Float(kInvPi), Float(1.0f));
-  Float d_trt = min(sqrt(x_trt * x_trt + blur) * Float(kInvPi), Float(1.0f));
   Float e_tt = w * (cx.x + cy.x + cz.x);
   Float e_trt = w * (cx.y + cy.y + cz.y);
-  r.tt = s.tt + Vec3(c_tt, Float(2.0f) * c_tt * c_tt - Float(1.0f), Float(1.0f) - d_tt) * e_tt;
-  r.trt = s.trt + Vec3(c_trt, Float(2.0f) * c_trt * c_trt - Float(1.0f), d_trt) * e_trt;
+  Float front_tt = Float(0.5f) + m_asin(rho * c_tt) * Float(kInvPi);
+  Float front_trt = Float(0.5f) - m_asin(rho * c_trt) * Float(kInvPi);
+  r.tt = s.tt + Vec3(c_tt, Float(2.0f) * c_tt * c_tt - Float(1.0f), front_tt) * e_tt;
+  r.trt = s.trt + Vec3(c_trt, Float(2.0f) * c_trt * c_trt - Float(1.0f), front_trt) * e_trt;
   return r;
 }
 
@@ -162,7 +139,7 @@ PELAGE_FN ScatterLobes scatter_prepare_marschner(ScatterFiber f, Float sin_o, Fl
   Float inv_eta2 = cos_o * cos_o / (f.eta * f.eta - sin2);
   Float cos_theta_t = sqrt(Float(1.0f) - sin2 / (f.eta * f.eta));
   Vec3 tau = f.sigma_a * (Float(1.0f) / cos_theta_t);
-  Float blur = Float(0.636619772367581f) * f.v_n;
+  Float rho = m_exp(Float(-kInvPi) * f.v_n);
   ScatterSums s;
   Vec3 zero = Vec3(Float(0.0f), Float(0.0f), Float(0.0f));
   s.a_r = Float(0.0f);
@@ -172,11 +149,16 @@ PELAGE_FN ScatterLobes scatter_prepare_marschner(ScatterFiber f, Float sin_o, Fl
   s.front_r = Float(0.0f);
   s.tt = zero;
   s.trt = zero;
-  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, blur, Float(0.073686177f), Float(0.073619513f), Float(0.997286402f), Float(0.185576989f));
-  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, blur, Float(0.362485356f), Float(0.354599180f), Float(0.935018407f), Float(0.351486583f));
-  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, blur, Float(0.785398163f), Float(0.707106781f), Float(0.707106781f), Float(0.315938342f));
-  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, blur, Float(1.208310971f), Float(0.935018407f), Float(0.354599180f), Float(0.133298824f));
-  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, blur, Float(1.497110150f), Float(0.997286402f), Float(0.073619513f), Float(0.013699262f));
+  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
+                         Float(0.073686177f), Float(0.073619513f), Float(0.997286402f), Float(0.185576989f));
+  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
+                         Float(0.362485356f), Float(0.354599180f), Float(0.935018407f), Float(0.351486583f));
+  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
+                         Float(0.785398163f), Float(0.707106781f), Float(0.707106781f), Float(0.315938342f));
+  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
+                         Float(1.208310971f), Float(0.935018407f), Float(0.354599180f), Float(0.133298824f));
+  s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
+                         Float(1.497110150f), Float(0.997286402f), Float(0.073619513f), Float(0.013699262f));
 
   ScatterLobes l;
   l.sin_o = sin_o;
@@ -213,7 +195,7 @@ PELAGE_FN ScatterLobes scatter_prepare_zhu(ScatterFiber f, Float sin_o, Float co
   l.n_tt.sin_mu = Float(0.0f);
   l.n_tt.norm = Float(0.0795774715459477f) / scatter_i0e(l.n_tt.kappa);
   l.front_r = Float(0.5f);
-  l.front_tt = max(Float(1.0f) - sqrt(Float(0.636619772367581f) * f.v_n) * Float(kInvPi), Float(0.5f));
+  l.front_tt = Float(0.5f) + m_asin(m_exp(Float(-kInvPi) * f.v_n)) * Float(kInvPi);
   l.a_rest = l.a_rest + l.a_trt;
   l.a_trt = Vec3(Float(0.0f), Float(0.0f), Float(0.0f));
   l.trt = scatter_cone(l.sin_o, l.cos_o, Float(0.0f), Float(0.322467033424113f));

@@ -1,0 +1,207 @@
+// Dual scattering against sums written out, traced rays, and the two-flux solution of a half-space of hair.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "kernel/scalar.h"
+#include "oracle/fiber_oracle.h"
+
+namespace pelage::kernel {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+ScatterFiber fiber_of(Vec3 sigma_a, float beta_n = 0.26f, float beta_m = 0.13f) {
+  return scatter_fiber(1.55f, beta_m, beta_n, 0.0524f, 1, sigma_a);
+}
+ScatterLobes lobes_of(Vec3 sigma_a, float theta_o, float beta_n = 0.26f, float beta_m = 0.13f) {
+  return scatter_prepare_marschner(fiber_of(sigma_a, beta_n, beta_m), std::sin(theta_o), std::cos(theta_o));
+}
+
+// Integral over the directions with phi in (-phi_max, phi_max).
+template <class Value>
+double integrate(Value&& value, double phi_max = kPiD, int thetas = 300, int phis = 300) {
+  double sum = 0;
+  for (int i = 0; i < thetas; ++i) {
+    const double theta = kPiD * ((i + 0.5) / thetas - 0.5);
+    const float s = static_cast<float>(std::sin(theta)), c = static_cast<float>(std::cos(theta));
+    for (int j = 0; j < phis; ++j) {
+      sum += std::cos(theta) * value(s, c, static_cast<float>(std::cos(phi_max * (j + 0.5) / phis)));
+    }
+  }
+  return sum * kPiD / thetas * 2 * phi_max / phis;
+}
+
+// Share |x|/pi of an exit at phi after a Gaussian blur, by sampling the Gaussian.
+double blurred_share(double phi, double beta) {
+  double sum = 0, weight = 0;
+  for (int i = -60; i <= 60; ++i) {
+    const double x = i / 10.0, w = std::exp(-0.5 * x * x);
+    sum += w * std::fabs(std::remainder(phi + x * beta, 2 * kPiD)) / kPiD, weight += w;
+  }
+  return sum / weight;
+}
+
+TEST(Dual, ForwardAndBackwardAveragesWithinTheirBoundOfTracedRays) {
+  double worst = 0;
+  for (const float beta_n : {0.02f, 0.26f, 0.7f}) {
+    for (const float sigma_a : {0.f, 0.3f, 2.f}) {
+      for (const float theta : {0.f, 0.5f, 1.f, 1.4f}) {
+        double exact = 0, total = 0;
+        constexpr int kRays = 400;
+        for (int i = 0; i < kRays; ++i) {
+          const double gamma = (i + 0.5) / kRays * kPiD / 2, w = std::cos(gamma) * kPiD / 2 / kRays;
+          const auto exits = oracle::trace<200>(std::cos(theta), std::sin(gamma), 1.55, sigma_a);
+          for (std::size_t k = 0; k < exits.size(); ++k) {
+            total += w * exits[k].energy;
+            // R is not blurred; paths after TRT leave uniformly.
+            const double share = k == 0  ? std::fabs(exits[k].phi) / kPiD
+                                 : k > 2 ? 0.5
+                                         : blurred_share(exits[k].phi, beta_n);
+            exact += w * exits[k].energy * share;
+          }
+        }
+        const ScatterAverages a = scatter_averages(lobes_of({sigma_a, sigma_a, sigma_a}, theta, beta_n));
+        worst = std::max({worst, std::fabs(a.a_f.x - exact), std::fabs(a.a_b.x - (total - exact))});
+        ASSERT_NEAR(a.a_f.x, exact, kDualAverageMaxAbsError) << beta_n << " " << sigma_a << " " << theta;
+        ASSERT_NEAR(a.a_b.x, total - exact, kDualAverageMaxAbsError) << beta_n << " " << sigma_a << " " << theta;
+      }
+    }
+  }
+  std::printf("mean attenuations: worst error %.2e\n", worst);
+}
+
+// A_1 = sum over i >= 1 of a_b a_f^2i, A_3 = sum over i >= 1, j < i, k > j of a_b^3 a_f^2(i-j-1+k).
+TEST(Dual, BackscatterIsTheSumOverItsPaths) {
+  for (const float a_f : {0.05f, 0.4f, 0.8f}) {
+    for (const float a_b : {0.02f, 0.2f}) {
+      double sum = 0;
+      for (int i = 1; i < 200; ++i) {
+        sum += a_b * std::pow(a_f, 2 * i);
+        for (int j = 0; j < i; ++j) {
+          for (int k = j + 1; k < 200; ++k)
+            sum += a_b * a_b * a_b * std::pow(static_cast<double>(a_f), 2 * (i - j - 1 + k));
+        }
+      }
+      EXPECT_NEAR(scatter_back_energy(a_f, a_b), sum, 1e-5 * sum) << a_f << " " << a_b;
+    }
+  }
+}
+
+TEST(Dual, TransmittanceIsTheMeanOverPoissonCounts) {
+  for (const float n : {0.f, 0.1f, 1.f, 5.f, 20.f}) {
+    for (const float a_f : {0.f, 0.3f, 0.9f}) {
+      double probability = std::exp(-static_cast<double>(n)), sum = 0;
+      EXPECT_NEAR(scatter_dual_direct(n), probability, 1e-7);
+      for (int k = 1; k < 200; ++k) probability *= n / k, sum += probability * std::pow(static_cast<double>(a_f), k);
+      EXPECT_NEAR(scatter_dual_transmittance(n, {a_f, a_f, a_f}).x, kDualDensity * sum, 1e-6) << n << " " << a_f;
+    }
+  }
+}
+
+TEST(Dual, ForwardAndLocalLobesIntegrateToTheirEnergies) {
+  for (const Vec3 sigma : {Vec3(0, 0.1f, 1), Vec3(0.5f, 2, 4)}) {
+    for (const float theta : {-1.3f, -0.4f, 0.f, 0.8f}) {
+      for (const float v : {0.f, 0.05f, 0.5f}) {
+        const ScatterLobes l = lobes_of(sigma, theta);
+        const ScatterLobes z = scatter_prepare_zhu(fiber_of(sigma), std::sin(theta), std::cos(theta));
+        const ScatterBack b = scatter_back(scatter_averages(l), l);
+        const double marschner = l.a_r + l.a_tt.y + l.a_trt.y + l.a_rest.y, zhu = z.a_r + z.a_tt.y + z.a_rest.y;
+        EXPECT_NEAR(
+            integrate([&](float s, float c, float p) { return scatter_dual_forward_marschner(l, v, s, c, p).y; }),
+            marschner, 0.01 * marschner);
+        EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_forward_zhu(z, v, s, c, p).y; }),
+                    zhu, 0.01 * zhu);
+        EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_local(b, v, s, c, p).y; }),
+                    2 * kDualDensity * b.a.y, 0.01 * 2 * kDualDensity * b.a.y);
+      }
+    }
+  }
+}
+
+// N^G of a pair, a logistic, against the mean of the pair over the half circle of azimuths that light comes from.
+TEST(Dual, AveragedAzimuthalLobesWithinTheirBound) {
+  double worst = 0;
+  for (const float beta_n : {0.17f, 0.26f, 0.6f}) {
+    for (const float theta : {0.f, 0.8f, 1.2f}) {
+      const ScatterLobes l = lobes_of({0.2f, 0.2f, 0.2f}, theta, beta_n);
+      double distance = 0;
+      constexpr int kSteps = 180;
+      for (int i = 0; i < kSteps; ++i) {
+        const double phi = (i + 0.5) * kPiD / kSteps;
+        double mean = 0;
+        for (int j = 0; j < kSteps; ++j) {
+          const float c = static_cast<float>(std::cos(phi + ((j + 0.5) / kSteps - 0.5) * kPiD));
+          mean += scatter_pair_value(l.n_tt, -c, scatter_sin_phi(c), 0) / kSteps;
+        }
+        const float fast = scatter_half_circle(-scatter_pair_sharpness(l.n_tt), static_cast<float>(std::cos(phi)));
+        distance += std::fabs(fast - mean) * kPiD / kSteps;
+      }
+      worst = std::max(worst, distance);
+      EXPECT_LE(distance, kAveragedPairMaxMisplaced) << beta_n << " " << theta;
+    }
+  }
+  std::printf("averaged azimuthal lobes: at most %.3f of the energy misplaced\n", worst);
+}
+
+// The furnace of docs/derivations/dual_scattering.md: a half-space of hair under light of radiance 1 from the front
+// half circle; a strand at depth n (mean number of hairs before it) is seen with probability e^-n. The value is the
+// radiance that leaves, averaged over the front half circle (phi_i and phi_o are uniform in it: phi has the weight 1 -
+// |phi|/pi); two_flux is the exact one of the same a_f and a_b in two directions.
+struct Furnace {
+  double dual, two_flux;
+};
+Furnace half_space(float sigma_a) {
+  const ScatterLobes l = lobes_of({sigma_a, sigma_a, sigma_a}, 0);
+  const ScatterAverages a = scatter_averages(l);
+  const ScatterBack b = scatter_back(a, l);
+  Furnace furnace{};
+  constexpr int kDepths = 60;
+  for (int i = 0; i < kDepths; ++i) {
+    const double seen = (i + 0.5) / kDepths;  // 1 - e^-n, uniform
+    const float n = static_cast<float>(-std::log1p(-seen));
+    const float v = scatter_dual_variance(n, a.v_f);
+    const float direct = scatter_dual_direct(n), through = scatter_dual_transmittance(n, a.a_f).x;
+    furnace.dual +=
+        integrate(
+            [&](float s, float c, float p) {
+              const float f =
+                  (scatter_marschner(l, s, c, p).x + scatter_dual_local(b, 0, s, c, p).x) * direct +
+                  (scatter_dual_forward_marschner(l, v, s, c, p).x + scatter_dual_local(b, v, s, c, p).x) * through;
+              return f * (1 - std::acos(p) / kPiD);
+            },
+            kPiD, 60, 120) /
+        kDepths;
+  }
+  const double k = 1 - a.a_f.x, s = a.a_b.x;
+  furnace.two_flux = (k - std::sqrt(std::max(k * k - s * s, 0.0))) / s;
+  return furnace;
+}
+
+TEST(Dual, WhiteFurnaceOfAHalfSpace) {
+  const struct {
+    const char* name;
+    float eumelanin;
+    Vec3 dual, two_flux;  // red, green, blue
+  } cases[] = {{"white", 0, {0.517f, 0.517f, 0.517f}, {1, 1, 1}},
+               {"blond", 0.1f, {0.352f, 0.289f, 0.199f}, {0.441f, 0.350f, 0.234f}},
+               {"brown", 1.3f, {0.0606f, 0.0360f, 0.0214f}, {0.0682f, 0.0393f, 0.0222f}},
+               {"black", 8, {0.0184f, 0.0182f, 0.0182f}, {0.0188f, 0.0186f, 0.0185f}}};
+  for (const auto& c : cases) {
+    const Vec3 sigma = scatter_melanin(c.eumelanin, 0);
+    const Furnace red = half_space(sigma.x), green = half_space(sigma.y), blue = half_space(sigma.z);
+    const double dual[] = {red.dual, green.dual, blue.dual}, two[] = {red.two_flux, green.two_flux, blue.two_flux};
+    const float expected[] = {c.dual.x, c.dual.y, c.dual.z}, exact[] = {c.two_flux.x, c.two_flux.y, c.two_flux.z};
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(dual[k], expected[k], 0.01 * expected[k]) << c.name << " channel " << k;
+      EXPECT_NEAR(two[k], exact[k], 0.01 * exact[k]) << c.name << " channel " << k;
+      EXPECT_LE(dual[k], two[k]) << c.name << ": dual scattering makes light";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pelage::kernel
