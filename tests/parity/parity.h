@@ -4,7 +4,6 @@ const float kParityRounding = 1.0e-6f;  // GLSL may contract a·b + c and divide
 const float kParityPow = 4.0e-6f;       // e^(y·log x): the error of the logarithm grows with y
 const float kParityScatter = 4.0e-6f;   // some ten roundings and elementary functions in a row
 const float kParityLobe = 5.0e-5f;      // exponents and concentrations of narrow lobes multiply those errors
-const float kParityPair = 2.0e-3f;      // a pair's separation near 0 is the root of a difference: the root of a rounding
 const float kParityGgx = 1.0e-5f;       // the narrow peak multiplies the error of the half vector
 
 PELAGE_FN Vec4 parity_result(Float x) { return Vec4(x, Float(0.0f), Float(0.0f), Float(0.0f)); }

@@ -70,8 +70,9 @@ struct ScatterSums {
   Vec3 a_trt;
   Vec3 a_rest;
   Float front_r;
-  Vec3 tt;               // energy of TT over all channels times cos x, cos 2x, 1 - |x|/pi; x = exit angle from phi = pi
-  Vec3 trt;              // the same of TRT; x from phi = 0, last entry |x|/pi; both after the blur by v_n
+  Vec3 tt;               // energy of TT over all channels times u, u^2 and the share that goes forward; u = 1 - cos x,
+                         // x the exit angle from phi = pi
+  Vec3 trt;              // the same of TRT, x from phi = 0
 };
 
 // One channel of one offset: (TT, TRT, rest) for the transmittance t of one crossing. Marschner 2003, eq. 8.
@@ -82,8 +83,8 @@ PELAGE_FN Vec3 scatter_attenuation(Float fresnel, Float t) {
 }
 
 // Adds the node h = sin(gamma_i) with weight w (which holds dh = cos(gamma_i) d gamma_i).
-// tau = sigma_a/cos(theta_t), inv_eta2 = 1/eta'^2 (Bravais). The mean of |x| = acos(cos x) under a blur is close to
-// acos(rho cos x), rho = e^(-v_n/pi).
+// tau = sigma_a/cos(theta_t), inv_eta2 = 1/eta'^2 (Bravais). Forward goes |phi|/pi; the mean of |x| = acos(cos x) after
+// the blur is close to acos(rho cos x) with rho = e^(-v_n/pi).
 PELAGE_FN ScatterSums scatter_add_offset(ScatterSums s, Float cos_o, Float eta, Vec3 tau, Float inv_eta2, Float rho,
                                          Float gamma, Float h, Float cos_i, Float w) {
   ScatterSums r = s;
@@ -100,32 +101,32 @@ PELAGE_FN ScatterSums scatter_add_offset(ScatterSums s, Float cos_o, Float eta, 
   r.a_rest = s.a_rest + Vec3(cx.z, cy.z, cz.z) * w;
   r.front_r = s.front_r + w * fresnel * (gamma * Float(0.636619772367581f));
   // Exit angles (Marschner 2003, eq. 9): TT 2 gamma_t - 2 gamma_i + pi, TRT 4 gamma_t - 2 gamma_i + 2 pi.
-  Float half_tt = cos_t * cos_i + sin_t * h;
-  Float c_tt = Float(2.0f) * half_tt * half_tt - Float(1.0f);
-  Float half_trt = (Float(2.0f) * cos_t * cos_t - Float(1.0f)) * cos_i + Float(2.0f) * sin_t * cos_t * h;
-  Float c_trt = Float(2.0f) * half_trt * half_trt - Float(1.0f);
+  Float half_tt = sin_t * cos_i - cos_t * h;
+  Float u_tt = Float(2.0f) * half_tt * half_tt;
+  Float half_trt = Float(2.0f) * sin_t * cos_t * cos_i - (Float(1.0f) - Float(2.0f) * sin_t * sin_t) * h;
+  Float u_trt = Float(2.0f) * half_trt * half_trt;
   Float e_tt = w * (cx.x + cy.x + cz.x);
   Float e_trt = w * (cx.y + cy.y + cz.y);
-  Float front_tt = Float(0.5f) + m_asin(rho * c_tt) * Float(kInvPi);
-  Float front_trt = Float(0.5f) - m_asin(rho * c_trt) * Float(kInvPi);
-  r.tt = s.tt + Vec3(c_tt, Float(2.0f) * c_tt * c_tt - Float(1.0f), front_tt) * e_tt;
-  r.trt = s.trt + Vec3(c_trt, Float(2.0f) * c_trt * c_trt - Float(1.0f), front_trt) * e_trt;
+  Float front_tt = Float(0.5f) + m_asin(rho * (Float(1.0f) - u_tt)) * Float(kInvPi);
+  Float front_trt = Float(0.5f) - m_asin(rho * (Float(1.0f) - u_trt)) * Float(kInvPi);
+  r.tt = s.tt + Vec3(u_tt, u_tt * u_tt, front_tt) * e_tt;
+  r.trt = s.trt + Vec3(u_trt, u_trt * u_trt, front_trt) * e_trt;
   return r;
 }
 
-// The pair with the trigonometric moments c1, c2 (relative to an energy) after a blur by e^(-v_n/2).
-PELAGE_FN ScatterPair scatter_pair(Float c1_sum, Float c2_sum, Float energy, Float blur1) {
+// The pair with the first two trigonometric moments c1, c2 of the exit angles, blurred by e^-v_n.
+// Two wrapped normals at +mu and -mu have c1 = E cos(mu), c2 = E^4 cos(2 mu); hence q = E^2 solves q^2 - 2 c1^2 q + c2 = 0.
+// With u = 1 - cos x its discriminant c1^4 - c2 = a^2 (6 - 4 a + a^2) - 2 mean(u^2), a = mean(u): nothing near 1 cancels.
+PELAGE_FN ScatterPair scatter_pair(Float u_sum, Float u2_sum, Float energy, Float v_n) {
   ScatterPair n;
   Float inv = Float(1.0f) / max(energy, Float(1.0e-30f));
-  Float blur2 = blur1 * blur1;
-  Float c1 = v_clamp(c1_sum * inv, Float(-1.0f), Float(1.0f)) * blur1;
-  Float c2 = v_clamp(c2_sum * inv, Float(-1.0f), Float(1.0f)) * blur2 * blur2;
-  // Wrapped normals: c1 = E cos(mu), c2 = E^4 cos(2 mu); hence q = E^2 solves q^2 - 2 c1^2 q + c2 = 0.
-  Float c11 = c1 * c1;
-  Float q = v_clamp(c11 + sqrt(max(c11 * c11 - c2, Float(0.0f))), Float(1.0e-8f), Float(1.0f));
-  Float r = sqrt(q);
-  n.kappa = scatter_kappa(r, Float(1.0f) - q);
-  n.cos_mu = v_clamp(c1 / r, Float(-1.0f), Float(1.0f));
+  Float a = min(u_sum * inv, Float(2.0f));
+  Float discriminant = max(a * a * (Float(6.0f) - a * (Float(4.0f) - a)) - Float(2.0f) * u2_sum * inv, Float(0.0f));
+  Float spread = v_clamp(a * (Float(2.0f) - a) - sqrt(discriminant), Float(0.0f), Float(0.9999f));  // 1 - q
+  Float blur = m_exp(-v_n);
+  Float one_minus_q = (Float(1.0f) - blur) + blur * spread;
+  n.kappa = scatter_kappa(sqrt(blur * (Float(1.0f) - spread)), one_minus_q);
+  n.cos_mu = v_clamp((Float(1.0f) - a) / sqrt(Float(1.0f) - spread), Float(-1.0f), Float(1.0f));
   n.sin_mu = sqrt(Float(1.0f) - n.cos_mu * n.cos_mu);
   n.norm = Float(0.0795774715459477f) / scatter_i0e(n.kappa);
   return n;
@@ -171,9 +172,8 @@ PELAGE_FN ScatterLobes scatter_prepare_marschner(ScatterFiber f, Float sin_o, Fl
   l.a_rest = s.a_rest;
   Float e_tt = s.a_tt.x + s.a_tt.y + s.a_tt.z;
   Float e_trt = s.a_trt.x + s.a_trt.y + s.a_trt.z;
-  Float blur1 = m_exp(Float(-0.5f) * f.v_n);
-  l.n_tt = scatter_pair(s.tt.x, s.tt.y, e_tt, blur1);
-  l.n_trt = scatter_pair(s.trt.x, s.trt.y, e_trt, blur1);
+  l.n_tt = scatter_pair(s.tt.x, s.tt.y, e_tt, f.v_n);
+  l.n_trt = scatter_pair(s.trt.x, s.trt.y, e_trt, f.v_n);
   l.front_r = s.front_r / max(s.a_r, Float(1.0e-30f));
   l.front_tt = s.tt.z / max(e_tt, Float(1.0e-30f));
   l.front_trt = s.trt.z / max(e_trt, Float(1.0e-30f));
