@@ -14,7 +14,7 @@ inline Vec3 push_out(const DistanceGrid& grid, Vec3 p, float clearance) {
 
 /// Keeps fringe and side hair out of the face: an invisible bulge in front of it. `share` 0…1 of the way out.
 inline Vec3 push_out_of_face(Vec3 p, float share) {
-  constexpr Vec3 center(0, -0.060f, 0.150f), radii(0.140f, 0.140f, 0.130f);
+  constexpr Vec3 center(0, -0.060f, 0.135f), radii(0.105f, 0.140f, 0.105f);
   const Vec3 local = p - center;
   const float distance = sd_ellipsoid(local, radii);
   return distance < 0 ? p - normalize(local / (radii * radii)) * (distance * share) : p;

@@ -45,6 +45,7 @@ StrandSet grow(const GrowSettings& settings, const TriangleMesh& surface, const 
   Ground ground;
   ground.mesh = &surface;
   ground.scalp = is_mannequin(surface);
+  ground.size = std::max(length(bounds(surface).extent()), 1e-6f);
   if (ground.scalp) ground.collider = &mannequin().grid;
 
   constexpr int kUnclumpedGuides = 500;

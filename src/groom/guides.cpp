@@ -30,31 +30,28 @@ Fall fall_of(HairStyle style) {
     case HairStyle::kStraight: return {0.34f, 0.050f, 0.12f};
     case HairStyle::kWavy: return {0.38f, 0.055f, 0.22f};
     case HairStyle::kCurly: return {0.42f, 0.060f, 0.45f};
-    case HairStyle::kAfro: return {1.00f, 0.060f, 0.35f};
+    case HairStyle::kAfro: return {0.30f, 0.060f, 0.20f};
     case HairStyle::kPonytail: return {0.20f, 0.045f, 0.10f};
     case HairStyle::kCoat: return {0.45f, 0.080f, 0.30f};
   }
   return {};
 }
 
-/// Combing direction on a body that is no mannequin: backward and down, with lazy eddies.
-Vec3 body_flow(Vec3 p, Vec3 normal, float scale) {
-  const Vec3 back = Vec3(0, -0.6f, -0.8f) + noise3_vector(p * (3 / scale), 5u) * 0.9f;
-  return back - normal * dot(back, normal);
-}
-
 /// Hair that comes down on a shoulder goes in front of it or behind: the pull there along z, −1…1.
 float shoulder_pull(Vec3 p, bool front) {
-  const float near_shoulder = smoothstep(-0.06f, -0.12f, p.y) * smoothstep(0.03f, 0.06f, std::abs(p.x));
+  const float near_shoulder = smoothstep(-0.07f, -0.14f, p.y) * smoothstep(0.03f, 0.06f, std::abs(p.x));
   return near_shoulder * (front ? smoothstep(0.06f, 0.03f, p.z) : -smoothstep(-0.105f, -0.06f, p.z));
+}
+
+/// Side hair is swept back beside the face: the pull along −z, 0…1, on hair that hangs ahead of the temples.
+float sweep_back(Vec3 p) {
+  return smoothstep(0.04f, 0.085f, p.z) * smoothstep(0.09f, 0.05f, p.y) * smoothstep(-0.17f, -0.11f, p.y);
 }
 
 class GuideGrower {
  public:
   GuideGrower(const GrowSettings& settings, const Ground& ground, int points, float step)
-      : s_(settings), ground_(ground), fall_(fall_of(settings.style)), points_(points), step_(step) {
-    body_size_ = std::max(length(bounds(*ground.mesh).extent()), 1e-6f);
-  }
+      : s_(settings), ground_(ground), fall_(fall_of(settings.style)), points_(points), step_(step) {}
 
   /// Writes the points of guide `id`; returns the arc length at the tie, 0 without one.
   float grow(const Root& root, std::uint32_t id, Vec3* out) const {
@@ -65,16 +62,8 @@ class GuideGrower {
 
  private:
   Vec3 first_direction(const Root& root) const {
-    const Vec3 jitter = noise3_vector(root.position * 40.f, 21u) * 0.08f;
-    if (s_.style == HairStyle::kAfro && ground_.scalp) {
-      const Vec3 radial = normalize(root.position - Vec3(0, 0.02f, -0.015f));
-      return normalize(root.normal * 0.5f + radial * 0.5f + jitter * 2.f);
-    }
-    Vec3 comb;
-    if (!ground_.scalp) comb = body_flow(root.position, root.normal, body_size_);
-    else if (s_.style == HairStyle::kCoat) comb = whorl_flow(root.position, root.normal);
-    else comb = parting_flow(root.position, root.normal, s_.parting);
-    return normalize(root.normal * fall_.lift + normalize(comb) * (1 - fall_.lift) + jitter);
+    return normalize(root.normal * fall_.lift + normalize(combing(s_, ground_, root)) * (1 - fall_.lift) +
+                     noise3_vector(root.position * 40.f, 21u) * 0.08f);
   }
 
   /// Gravity takes over from the first direction; the skin, the face and the shoulders turn the strand aside.
@@ -89,7 +78,8 @@ class GuideGrower {
       const float s = static_cast<float>(i) * step_;
       const Vec3 pull = kDown * (s_.gravity * smoothstep(0.f, fall_.bend_length, s)) + noise3_vector(p * 25.f, 31u) * fall_.wander;
       direction = normalize(direction + pull * turn);
-      if (ground_.scalp) direction = normalize(direction + Vec3(0, 0, 1) * (shoulder_pull(p, front) * step_ / 0.025f));
+      if (ground_.scalp)
+        direction = normalize(direction + Vec3(0, 0, step_) * (shoulder_pull(p, front) / 0.035f - sweep_back(p) / 0.03f));
       Vec3 next = p + direction * step_;
       if (ground_.collider)
         next = push_out(*ground_.collider, next, std::min(0.4f * s, 0.0012f + layer * smoothstep(0.f, 0.10f, s)));
@@ -134,7 +124,7 @@ class GuideGrower {
   const Ground& ground_;
   Fall fall_;
   int points_;
-  float step_, body_size_;
+  float step_;
 };
 
 /// Binomial smoothing that keeps both ends.
@@ -175,6 +165,18 @@ void gather_into_locks(GuideSet& guides, std::size_t locks, const GrowSettings& 
 
 DensityField Ground::density() const { return scalp ? DensityField(scalp_density) : DensityField(); }
 
+Vec3 combing(const GrowSettings& settings, const Ground& ground, const Root& root) {
+  const auto tangential = [&root](Vec3 v) { return v - root.normal * dot(v, root.normal); };
+  if (!ground.scalp)  // backward and down, with lazy eddies
+    return tangential(Vec3(0, -0.6f, -0.8f) + noise3_vector(root.position * (3 / ground.size), 5u) * 0.9f);
+  switch (settings.style) {
+    case HairStyle::kAfro: return root.position - Vec3(0, 0.045f, -0.012f);
+    case HairStyle::kPonytail: return tangential(kTie - root.position);
+    case HairStyle::kCoat: return whorl_flow(root.position, root.normal);
+    default: return parting_flow(root.position, root.normal, settings.parting);
+  }
+}
+
 GuideSet grow_guides(const GrowSettings& settings, const Ground& ground, std::size_t count, float guide_length) {
   GuideSet guides;
   guides.points = settings.style == HairStyle::kCoat ? 24 : 96;
@@ -193,7 +195,7 @@ GuideSet grow_guides(const GrowSettings& settings, const Ground& ground, std::si
     }
   });
   const bool tied = ground.scalp && settings.style == HairStyle::kPonytail;
-  if (!tied) gather_into_locks(guides, (count + 7) / 8, settings);
+  if (!tied && settings.style != HairStyle::kAfro) gather_into_locks(guides, (count + 7) / 8, settings);
   parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g)
       rotation_minimizing_frames(guides.position.data() + g * points, guides.points, guides.roots[g].normal,

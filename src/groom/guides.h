@@ -16,8 +16,12 @@ struct Ground {
   const TriangleMesh* mesh = nullptr;
   const DistanceGrid* collider = nullptr;  ///< null: nothing to collide with
   bool scalp = false;                      ///< the mesh is the mannequin: hair stands on its scalp only
+  float size = 1;                          ///< metres, diagonal of the mesh's box, > 0
   DensityField density() const;
 };
+
+/// Direction, not normalised, in which the style combs hair at `root`.
+Vec3 combing(const GrowSettings& settings, const Ground& ground, const Root& root);
 
 /// Guides of equal arc length, each with a rotation-minimising frame. The first n are spread evenly for any n.
 struct GuideSet {

@@ -39,11 +39,11 @@ float nose(float d, Vec3 q) {
 
 float mouth(float d, Vec3 q) {
   d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.068f, 0.0675f), {0.032f, 0.026f, 0.022f}), 0.016f);
-  const float upper = sd_capsule(q, {0.0040f, -0.0645f, 0.0928f}, {0.0230f, -0.0705f, 0.0835f}, 0.0048f, 0.0022f);
+  const float upper = sd_capsule(q, {0.0015f, -0.0648f, 0.0932f}, {0.0230f, -0.0705f, 0.0835f}, 0.0048f, 0.0022f);
   const float lower = sd_capsule(q, {0.0000f, -0.0755f, 0.0920f}, {0.0210f, -0.0720f, 0.0832f}, 0.0056f, 0.0022f);
   d = smooth_union(d, lower, 0.006f);
   d = smooth_union(d, upper, 0.003f);
-  d = smooth_difference(d, sd_capsule(q, {0, -0.0500f, 0.1000f}, {0, -0.0580f, 0.1010f}, 0.0024f, 0.0024f), 0.010f);
+  d = smooth_difference(d, sd_capsule(q, {0, -0.0500f, 0.0985f}, {0, -0.0570f, 0.0995f}, 0.0022f, 0.0022f), 0.006f);
   return smooth_difference(d, sd_ellipsoid(q - Vec3(0, -0.0870f, 0.0975f), {0.018f, 0.0045f, 0.006f}), 0.012f);
 }
 

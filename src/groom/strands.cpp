@@ -17,14 +17,15 @@ namespace pelage::groom {
 namespace {
 
 constexpr float kTwoPi = 6.28318531f;
-constexpr std::uint32_t kLockStream = 0x6c6f636bu, kStrandStream = 0x7374726eu;
+constexpr std::uint32_t kLockStream = 0x6c6f636bu, kTuftStream = 0x74756674u, kStrandStream = 0x7374726eu;
 constexpr int kTuftSize = 14;
 constexpr float kWoolLength = 0.55f, kWoolWidth = 0.6f;  // of the guard hairs'
 
 /// What tells the styles' strands apart beyond the public settings.
 struct StrandStyle {
   float ellipticity;   ///< of the curl's cross-section: 1 helix, 0 flat wave
-  float phase_spread;  ///< radians, standard deviation of the curl's phase within a lock
+  float phase_spread;  ///< radians, standard deviation of the curl's phase between the tufts of a lock
+  float tuft;          ///< how far a tuft gathers whatever the lock does, 0…1
   float lock_share;    ///< share of the length's variance that a lock has in common
   float curl_start;    ///< share of the strand over which the curl grows to its radius
   float fade;          ///< metres above the hairline over which hair reaches its length; 0 none
@@ -32,12 +33,12 @@ struct StrandStyle {
 
 StrandStyle style_of(HairStyle style) {
   switch (style) {
-    case HairStyle::kStraight: return {0, 0, 0.5f, 0.2f, 0};
-    case HairStyle::kWavy: return {0.35f, 0.45f, 0.5f, 0.25f, 0};
-    case HairStyle::kCurly: return {1, 0.55f, 0.5f, 0.2f, 0};
-    case HairStyle::kAfro: return {1, 2.5f, 0.15f, 0.1f, 0.035f};
-    case HairStyle::kPonytail: return {0.4f, 0.5f, 0.5f, 0.3f, 0};
-    case HairStyle::kCoat: return {0.5f, 1.5f, 0.3f, 0.1f, 0.03f};
+    case HairStyle::kStraight: return {0, 0, 0.3f, 0.5f, 0.2f, 0};
+    case HairStyle::kWavy: return {0.35f, 0.4f, 0.4f, 0.5f, 0.25f, 0};
+    case HairStyle::kCurly: return {1, 0.35f, 0.5f, 0.5f, 0.2f, 0};
+    case HairStyle::kAfro: return {1, 3, 0.85f, 0.1f, 0.1f, 0.035f};
+    case HairStyle::kPonytail: return {0.4f, 0.5f, 0.3f, 0.5f, 0.3f, 0};
+    case HairStyle::kCoat: return {0.5f, 1.5f, 0.4f, 0.3f, 0.1f, 0.03f};
   }
   return {};
 }
@@ -94,7 +95,7 @@ class StrandFiller {
  public:
   StrandFiller(const GrowSettings& settings, const Ground& ground, const GuideSet& guides, const std::vector<Root>& roots)
       : s_(settings), style_(style_of(settings.style)), ground_(ground), guides_(guides), roots_(roots),
-        members_(find_memberships(guides, roots, kTuftSize)) {
+        members_(find_memberships(settings, ground, guides, roots, kTuftSize)) {
     locks_.reserve(guides.count());
     for (std::size_t g = 0; g < guides.count(); ++g) locks_.push_back(make_lock(static_cast<std::uint32_t>(g)));
   }
@@ -155,7 +156,7 @@ Traits StrandFiller::draw_traits(std::uint32_t root, Rng& rng) const {
   t.length = draw_length(lock, roots_[root].position, rng) * (wool ? kWoolLength : 1);
   t.width = s_.width * std::max(0.2f, 1 + s_.width_variation * rng.normal()) * (wool ? kWoolWidth : 1);
   t.tightness = stray ? 0 : saturate(lock.tightness * mix(0.8f, 1.1f, rng.uniform()) * (wool ? 0.4f : 1));
-  t.phase = lock.phase + style_.phase_spread * rng.normal();
+  t.phase = lock.phase + style_.phase_spread * Rng(s_.seed, members_[root].tuft, kTuftStream).normal() + 0.25f * rng.normal();
   t.radius = lock.radius * mix(0.75f, 1.15f, rng.uniform());
   const float size = std::min(1.f, s_.length / 0.15f);
   t.frizz = size * s_.frizz * (0.0005f + 0.0035f * s_.frizz) * (stray ? 2.5f : wool ? 2.f : 1.f) * mix(0.5f, 1.5f, rng.uniform());
@@ -204,9 +205,12 @@ HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* posi
   const float step = t.length / static_cast<float>(points - 1);
   Frizz frizz(rng, step);
 
-  Vec3 offset[kBlend];
-  for (int k = 0; k < kBlend; ++k) offset[k] = offset_from(m.guide[k], root.position);
-  const Vec3 tuft = t.stray > 0 ? offset[0] : offset_from(own, roots_[m.tuft].position);
+  Vec3 offset[kBlend], tuft[kBlend];  // from each guide, of the strand and of the middle of its tuft
+  for (int k = 0; k < kBlend; ++k) {
+    offset[k] = offset_from(m.guide[k], root.position);
+    tuft[k] = t.stray > 0 ? offset[k] : offset_from(m.guide[k], roots_[m.tuft].position);
+  }
+  const float loyalty = saturate(2 * t.tightness);  // how much of the own lock alone shapes the tip
   const float slope = kTwoPi * t.radius / lock.pitch * std::sqrt(0.5f * (1 + square(style_.ellipticity)));
 
   position[0] = root.position, width[0] = t.width;
@@ -217,14 +221,13 @@ HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* posi
     const float grown = smoothstep(0.f, style_.curl_start, u) * mix(1.f, 0.8f, u);
     axis += step / std::sqrt(1 + square(slope * grown));
 
-    const float gather = smoothstep(lock.start, 0.9f, u), fine = t.tightness * smoothstep(0.f, 0.5f, u);
-    const float squeeze = tie_squeeze(own, axis);
-    Vec3 p = follow(own, lerp(offset[0], tuft, 0.8f * fine) * ((1 - t.tightness * gather) * squeeze), axis);
-    if (gather < 1)
-      for (int k = 1; k < kBlend; ++k) {
-        const float weight = m.weight[k] * (1 - gather);
-        if (weight > 0) p = p + (follow(m.guide[k], offset[k] * squeeze, axis) - p) * weight;
-      }
+    const float gather = smoothstep(lock.start, 0.7f, u), fine = std::max(style_.tuft, 0.8f * t.tightness) * smoothstep(0.f, 0.5f, u);
+    const float close = (1 - t.tightness * gather) * tie_squeeze(own, axis), apart = 1 - loyalty * gather;
+    Vec3 p = follow(own, lerp(offset[0], tuft[0], fine) * close, axis);
+    Vec3 blend;
+    for (int k = 1; k < kBlend && apart > 0; ++k)
+      blend = blend + (follow(m.guide[k], lerp(offset[k], tuft[k], fine) * close, axis) - p) * (m.weight[k] * apart);
+    p = p + blend;
     if (t.radius > 0) {
       const float wobble = 0.9f * std::sin(axis * 23.f + lock.phase);
       p = p + curl(own, axis, t.phase + lock.handedness * (kTwoPi * axis / lock.pitch + wobble), t.radius * grown);

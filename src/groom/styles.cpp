@@ -20,12 +20,12 @@ GrowSettings grow_defaults(HairStyle style) {
       s.curl_radius = 0.007f, s.curl_pitch = 0.085f, s.flyaways = 0.025f, s.volume = 0.018f;
       break;
     case HairStyle::kCurly:
-      s.length = 0.40f, s.clumps = 650, s.clump_tightness = 0.7f, s.frizz = 0.4f, s.curl_radius = 0.0075f;
+      s.length = 0.40f, s.clumps = 480, s.clump_tightness = 0.85f, s.frizz = 0.3f, s.curl_radius = 0.009f;
       s.curl_pitch = 0.036f, s.flyaways = 0.03f, s.volume = 0.024f;
       break;
     case HairStyle::kAfro:
-      s.length = 0.22f, s.length_variation = 0.12f, s.clumps = 5000, s.clump_tightness = 0.3f, s.frizz = 0.6f;
-      s.curl_radius = 0.0035f, s.curl_pitch = 0.010f, s.flyaways = 0.04f, s.gravity = 0.1f, s.volume = 0.004f;
+      s.length = 0.22f, s.length_variation = 0.12f, s.clumps = 5000, s.clump_tightness = 0.2f, s.frizz = 0.5f;
+      s.curl_radius = 0.0042f, s.curl_pitch = 0.012f, s.flyaways = 0.04f, s.gravity = 0.06f, s.volume = 0.004f;
       break;
     case HairStyle::kPonytail:
       s.length = 0.42f, s.length_variation = 0.1f, s.clumps = 900, s.clump_tightness = 0.35f, s.frizz = 0.12f;
