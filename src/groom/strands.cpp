@@ -113,6 +113,7 @@ class StrandFiller {
   Vec3 follow(std::uint32_t g, Vec3 offset, float s) const;
   Vec3 curl(std::uint32_t g, float s, float angle, float radius) const;
   float tie_squeeze(std::uint32_t g, float s) const;
+  Vec3 outward(const Root& root, Vec3 p) const;
 
   const GrowSettings& s_;
   const StrandStyle style_;
@@ -195,6 +196,11 @@ float StrandFiller::tie_squeeze(std::uint32_t g, float s) const {
   return mix(1.f, 0.25f, smoothstep(0.2f * tie, 0.95f * tie, s)) + 0.45f * smoothstep(0.005f, 0.06f, s - tie);
 }
 
+/// Where a stray hair at `p` stands off to.
+Vec3 StrandFiller::outward(const Root& root, Vec3 p) const {
+  return ground_.scalp ? normalize(Vec3(p.x, std::max(p.y, 0.f), p.z + 0.012f)) : root.normal;
+}
+
 HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* position, float* width) const {
   Rng rng(s_.seed, index, kStrandStream);
   const Root& root = roots_[index];
@@ -233,13 +239,8 @@ HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* posi
       p = p + curl(own, axis, t.phase + lock.handedness * (kTwoPi * axis / lock.pitch + wobble), t.radius * grown);
     }
     p = p + frizz.next() * (t.frizz * u * (0.3f + 0.7f * u));
-    if (ground_.collider) {
-      const DistanceSample skin = sample_distance(*ground_.collider, p);
-      const float clearance = std::min(0.3f * s, 0.0008f), stray = t.stray * square(u);
-      p = p + normalize(skin.gradient) * (std::max(clearance - skin.distance, 0.f) + stray);
-    } else if (t.stray > 0) {
-      p = p + root.normal * (t.stray * square(u));
-    }
+    if (t.stray > 0) p = p + outward(root, p) * (t.stray * square(u));
+    if (ground_.collider) p = push_out(*ground_.collider, p, std::min(0.3f * s, 0.0008f));
     position[j] = p;
     width[j] = t.width * (1 - s_.taper * square(u));
   }
