@@ -30,23 +30,24 @@ std::size_t strand_total(const Scene& scene) {
 struct MapJob {
   const Scene& scene;
   const MeshTracer& meshes;
-  Bounds grooms;
+  const std::vector<StrandLines>& lines;
+  Bounds subject;  ///< what the maps look at: the grooms, or the meshes where there are none
   int size;
   std::size_t strand_stride;
 };
 
 void prepare(PreparedLight prepared, const MapJob& job, LightRig& rig) {
   prepared.light.direction = normalize(prepared.light.direction);
-  if (!job.scene.settings.shadows || !prepared.light.casts_shadow || job.grooms.empty()) {
+  if (!job.scene.settings.shadows || !prepared.light.casts_shadow || job.subject.empty()) {
     rig.lights.push_back(std::move(prepared));
     return;
   }
-  const std::vector<CameraView> views = light_views(prepared.light, job.grooms, job.size);
+  const std::vector<CameraView> views = light_views(prepared.light, job.subject, job.size);
   for (const CameraView& view : views) {
     PreparedLight face;
     face.light = prepared.light, face.spread = prepared.spread;
     face.only_in_view = views.size() > 1;
-    face.opacity = build_opacity_map(job.scene.grooms, view, {job.strand_stride});
+    face.opacity = build_opacity_map(job.lines, view, {job.strand_stride});
     face.shadow = build_shadow_map(job.meshes, view);
     rig.lights.push_back(std::move(face));
   }
@@ -56,7 +57,9 @@ void prepare(PreparedLight prepared, const MapJob& job, LightRig& rig) {
 
 LightRig prepare_lights(const Scene& scene, const MeshTracer& meshes) {
   LightRig rig;
-  MapJob job{scene, meshes, groom_bounds(scene.grooms), scene.settings.opacity_map_size, 1};
+  const std::vector<StrandLines> lines = strand_lines(scene.grooms);
+  const Bounds hair = bounds(lines);
+  MapJob job{scene, meshes, lines, hair.empty() ? meshes.bounds() : hair, scene.settings.opacity_map_size, 1};
   for (const Light& light : scene.lights) {
     if (!emits(light)) continue;
     PreparedLight prepared;

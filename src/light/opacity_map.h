@@ -6,9 +6,10 @@
 // crossings by a ray through a random place of the texel. Sums of such expectations are right for any texel size.
 #pragma once
 
-#include <pelage/scene.h>
+#include <vector>
 
 #include "frame/frame.h"
+#include "light/strand_lines.h"
 
 namespace pelage {
 
@@ -22,7 +23,7 @@ struct OpacitySettings {
 /// The origin of the layers is coarser than the map (OpacityMap::kOriginBlock): that costs little detail and saves time.
 /// Layer ends double from layer to layer and the last one reaches the farthest strand of all.
 /// The result is exact in integers: the same for any thread count. Complexity: O(control points + texels touched).
-OpacityMap build_opacity_map(const std::vector<GroomInstance>& grooms, const CameraView& view,
+OpacityMap build_opacity_map(const std::vector<StrandLines>& grooms, const CameraView& view,
                              const OpacitySettings& settings = {});
 
 }  // namespace pelage

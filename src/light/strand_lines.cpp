@@ -4,6 +4,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "frame/camera_view.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
@@ -19,67 +20,112 @@ Vec4 basis_weights(CurveBasis basis, float t) {
   return kernel::curve_linear_weights(t);
 }
 
-float scale_of(const Affine& a) { return length(transform_vector(a, {1, 0, 0})); }
+std::size_t span_stride(const StrandSet& set) { return set.basis == CurveBasis::kBezier ? 3 : 1; }
 
-}  // namespace
-
-StrandLines::StrandLines(const GroomInstance& groom, int segments_per_span)
-    : groom_(&groom), width_scale_(groom.width_scale * scale_of(groom.transform)) {
-  PELAGE_CHECK(segments_per_span >= 1 && segments_per_span <= 16);
-  const CurveBasis basis = groom.strands->basis;
-  const int n = basis == CurveBasis::kLinear ? 1 : segments_per_span;
-  for (int k = 1; k <= n; ++k) weights_.push_back(basis_weights(basis, static_cast<float>(k) / static_cast<float>(n)));
-}
-
-void StrandLines::append(std::size_t strand, std::vector<Vec3>& points, std::vector<float>& widths) const {
-  const StrandSet& set = *groom_->strands;
-  const bool bezier = set.basis == CurveBasis::kBezier;
-  const std::size_t begin = set.offsets[strand], end = set.offsets[strand + 1];
-  if (end - begin < 2) return;
-  const auto point = [&](std::size_t i) { return transform_point(groom_->transform, set.points[i]); };
-  const std::size_t stride = bezier ? 3 : 1, spans = (end - begin - 1) / stride;
-  Vec3 p[4];
-  for (std::size_t s = 0; s < spans; ++s) {
-    const std::size_t i = begin + s * stride;
-    p[1] = point(bezier ? i + 1 : i), p[2] = point(bezier ? i + 2 : i + 1);
-    p[0] = bezier ? point(i) : i > begin ? point(i - 1) : p[1] * 2.f - p[2];
-    p[3] = bezier ? point(i + 3) : i + 2 < end ? point(i + 2) : p[2] * 2.f - p[1];
-    const float from = set.width(i) * width_scale_, to = set.width(i + stride) * width_scale_;
-    if (s == 0) {
-      const Vec4 w = basis_weights(set.basis, 0);
-      points.push_back(kernel::curve_combine(w, p[0], p[1], p[2], p[3])), widths.push_back(from);
+Bounds control_bounds(const GroomInstance& groom) {
+  constexpr std::size_t kGrain = 1 << 16;
+  const std::vector<Vec3>& points = groom.strands->points;
+  std::vector<Bounds> part((points.size() + kGrain - 1) / kGrain);
+  parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Bounds box;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 p = transform_point(groom.transform, points[i]);
+      box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y), std::min(box.lower.z, p.z)};
+      box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y), std::max(box.upper.z, p.z)};
     }
-    for (std::size_t k = 0; k < weights_.size(); ++k) {
-      points.push_back(kernel::curve_combine(weights_[k], p[0], p[1], p[2], p[3]));
-      widths.push_back(from + (to - from) * static_cast<float>(k + 1) / static_cast<float>(weights_.size()));
-    }
-  }
+    part[begin / kGrain] = box;
+  });
+  Bounds all;
+  for (const Bounds& b : part) all.extend(b);
+  return all;
 }
 
 float mean_span_length(const GroomInstance& groom) {
   const StrandSet& set = *groom.strands;
   const std::size_t step = set.strand_count() / 1000 + 1;
   double total = 0;
-  std::size_t spans = 0;
+  std::size_t pieces = 0;
   for (std::size_t s = 0; s < set.strand_count(); s += step)
-    for (std::size_t i = set.offsets[s]; i + 1 < set.offsets[s + 1]; ++i, ++spans)
+    for (std::size_t i = set.offsets[s]; i + 1 < set.offsets[s + 1]; ++i, ++pieces)
       total += static_cast<double>(length(set.points[i + 1] - set.points[i]));
-  if (spans == 0) return 0;
-  const int stride = set.basis == CurveBasis::kBezier ? 3 : 1;
-  return static_cast<float>(total / static_cast<double>(spans)) * static_cast<float>(stride) * scale_of(groom.transform);
+  if (pieces == 0) return 0;
+  return static_cast<float>(total / static_cast<double>(pieces)) * static_cast<float>(span_stride(set)) *
+         similarity_scale(groom.transform);
 }
 
-Bounds groom_bounds(const std::vector<GroomInstance>& grooms) {
-  constexpr std::size_t kGrain = 1 << 16;
-  Bounds all;
-  for (const GroomInstance& groom : grooms) {
-    const std::vector<Vec3>& points = groom.strands->points;
-    std::vector<Bounds> part((points.size() + kGrain - 1) / kGrain);
-    parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) part[begin / kGrain].extend(transform_point(groom.transform, points[i]));
-    });
-    for (const Bounds& b : part) all.extend(b);
+void reserve(LineBlock& block, std::size_t points) {
+  for (Buffer<float>* b : {&block.x, &block.y, &block.z, &block.width}) b->resize(points + LineBlock::kPadding);
+}
+
+/// Points that a strand becomes.
+std::size_t line_points(const StrandSet& set, std::size_t strand, std::size_t segments) {
+  const std::size_t points = set.offsets[strand + 1] - set.offsets[strand];
+  return points < 2 ? 0 : (points - 1) / span_stride(set) * segments + 1;
+}
+
+}  // namespace
+
+StrandLines::StrandLines(const GroomInstance& groom)
+    : groom_(&groom), width_scale_(groom.width_scale * similarity_scale(groom.transform)),
+      mean_span_(mean_span_length(groom)), bounds_(control_bounds(groom)) {}
+
+void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const {
+  const StrandSet& set = *groom_->strands;
+  const bool bezier = set.basis == CurveBasis::kBezier;
+  const std::size_t begin = set.offsets[strand], end = set.offsets[strand + 1], stride = span_stride(set);
+  if (end - begin < 2) return;
+  const auto point = [&](std::size_t i) { return transform_point(groom_->transform, set.points[i]); };
+  const auto put = [&](Vec3 p, float width) {
+    const std::size_t j = block.count++;
+    block.x[j] = p.x, block.y[j] = p.y, block.z[j] = p.z, block.width[j] = width;
+  };
+  const std::size_t spans = (end - begin - 1) / stride;
+  Vec3 p[4];
+  for (std::size_t s = 0; s < spans; ++s) {
+    const std::size_t i = begin + s * stride;
+    const float from = set.width(i) * width_scale_, to = set.width(i + stride) * width_scale_;
+    if (weights.size() == 1 && !bezier && set.basis != CurveBasis::kBSpline) {  // through the control points
+      put(point(i), 0.5f * (from + to));
+      continue;
+    }
+    p[1] = point(bezier ? i + 1 : i), p[2] = point(bezier ? i + 2 : i + 1);
+    p[0] = bezier ? point(i) : i > begin ? point(i - 1) : p[1] * 2.f - p[2];
+    p[3] = bezier ? point(i + 3) : i + 2 < end ? point(i + 2) : p[2] * 2.f - p[1];
+    const float n = static_cast<float>(weights.size());
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      put(kernel::curve_combine(weights[k], p[0], p[1], p[2], p[3]), from + (to - from) * (static_cast<float>(k) + 0.5f) / n);
   }
+  // Phantom points make every basis end at its last control point.
+  put(point(begin + spans * stride), 0);
+}
+
+std::size_t StrandLines::fill(std::size_t first, std::size_t last, std::size_t stride, int segments_per_span,
+                              LineBlock& block) const {
+  PELAGE_CHECK(segments_per_span >= 1 && segments_per_span <= kMaxSegments && stride >= 1);
+  const StrandSet& set = *groom_->strands;
+  const int n = set.basis == CurveBasis::kLinear ? 1 : segments_per_span;
+  std::vector<Vec4> weights;  // of the control points, at 0, 1/n, … (n − 1)/n
+  for (int k = 0; k < n; ++k) weights.push_back(basis_weights(set.basis, static_cast<float>(k) / static_cast<float>(n)));
+  std::size_t points = 0, s = first;
+  for (; s < last && (s == first || points < LineBlock::kPoints); s += stride)
+    points += line_points(set, s, static_cast<std::size_t>(n));
+  reserve(block, points);
+  block.count = 0;
+  for (std::size_t i = first; i < s; i += stride) append(i, weights, block);
+  for (std::size_t j = block.count; j < block.count + LineBlock::kPadding; ++j)
+    block.x[j] = block.y[j] = block.z[j] = block.width[j] = 0;
+  return s;
+}
+
+std::vector<StrandLines> strand_lines(const std::vector<GroomInstance>& grooms) {
+  std::vector<StrandLines> lines;
+  for (const GroomInstance& groom : grooms) lines.emplace_back(groom);
+  return lines;
+}
+
+Bounds bounds(const std::vector<StrandLines>& grooms) {
+  Bounds all;
+  for (const StrandLines& g : grooms) all.extend(g.bounds());
   return all;
 }
 

@@ -3,32 +3,38 @@
 
 #include <pelage/scene.h>
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
+#include "light/splat.h"
+
 namespace pelage {
 
-/// Walks a groom's curves at a fixed number of segments per span. Refers to the groom: keep it alive.
+/// A groom as polylines of a fixed number of segments per span. Refers to the groom: keep it alive.
 class StrandLines {
  public:
-  /// 1 ≤ segments_per_span ≤ 16; linear grooms take one segment whatever is asked for.
-  StrandLines(const GroomInstance& groom, int segments_per_span);
+  /// O(control points), for the bounds.
+  explicit StrandLines(const GroomInstance& groom);
 
   std::size_t strand_count() const { return groom_->strands->strand_count(); }
-  /// Appends the points and widths (diameters, metres, world) of a strand, root first.
-  void append(std::size_t strand, std::vector<Vec3>& points, std::vector<float>& widths) const;
+  const Bounds& bounds() const { return bounds_; }  ///< of the control points, world space
+  float mean_span() const { return mean_span_; }    ///< metres, over at most a thousand strands
+
+  /// Fills `block` with strands first, first + stride, … below `last`: at least one, as many as LineBlock::kPoints takes.
+  /// Returns the next one. 1 ≤ segments_per_span ≤ kMaxSegments; linear grooms take one whatever is asked for.
+  std::size_t fill(std::size_t first, std::size_t last, std::size_t stride, int segments_per_span, LineBlock& block) const;
+  static constexpr int kMaxSegments = 4;
 
  private:
+  void append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const;
+
   const GroomInstance* groom_;
   float width_scale_;
-  std::vector<Vec4> weights_;  ///< blend of a span's four control points at 1/n, 2/n, … 1
+  float mean_span_ = 0;
+  Bounds bounds_;
 };
 
-/// Mean length of a span of `groom` in world space, metres, over at most a thousand strands; 0 for none.
-float mean_span_length(const GroomInstance& groom);
-
-/// World-space box of the control points of all grooms.
-Bounds groom_bounds(const std::vector<GroomInstance>& grooms);
+std::vector<StrandLines> strand_lines(const std::vector<GroomInstance>& grooms);
+Bounds bounds(const std::vector<StrandLines>& grooms);
 
 }  // namespace pelage
