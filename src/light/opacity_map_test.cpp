@@ -1,0 +1,178 @@
+// Deep opacity maps against closed forms and against counting crossings one by one.
+#include "light/opacity_map.h"
+
+#include <gtest/gtest.h>
+#include <pelage/runtime.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/rng.h"
+#include "frame/light_lookup.h"
+#include "light/light_view.h"
+
+namespace pelage {
+namespace {
+
+struct Straight {
+  Vec3 from, to;
+};
+
+GroomInstance groom_of(const std::vector<Straight>& lines, float width) {
+  auto set = std::make_shared<StrandSet>();
+  set->basis = CurveBasis::kLinear;
+  set->widths = {width};
+  set->offsets = {0};
+  for (const Straight& s : lines) {
+    set->points.push_back(s.from), set->points.push_back(s.to);
+    set->offsets.push_back(static_cast<std::uint32_t>(set->points.size()));
+  }
+  GroomInstance groom;
+  groom.strands = set;
+  return groom;
+}
+
+/// `count` strands of length 2 along x, at random y in [−1, 1] and z in [−depth, 0], seen from +z.
+std::vector<Straight> slab(int count, float depth) {
+  std::vector<Straight> lines;
+  for (int i = 0; i < count; ++i) {
+    Rng rng(7, static_cast<std::uint32_t>(i));
+    const float y = 2 * rng.uniform() - 1, z = -depth * rng.uniform();
+    lines.push_back({{-1, y, z}, {1, y, z}});
+  }
+  return lines;
+}
+
+std::vector<Straight> thicket(int count) {
+  std::vector<Straight> lines;
+  for (int i = 0; i < count; ++i) {
+    Rng rng(11, static_cast<std::uint32_t>(i));
+    const auto point = [&] { return Vec3(2 * rng.uniform() - 1, 2 * rng.uniform() - 1, 2 * rng.uniform() - 1); };
+    const Vec3 a = point();
+    lines.push_back({a, point()});
+  }
+  return lines;
+}
+
+Light directional(Vec3 direction) {
+  Light light;
+  light.direction = normalize(direction);
+  return light;
+}
+
+OpacityMap map_of(const GroomInstance& groom, const Light& light, int size) {
+  const std::vector<StrandLines> lines = strand_lines({groom});
+  return build_opacity_map(lines, light_views(light, bounds(lines), size).front());
+}
+
+bool same(const OpacityMap& a, const OpacityMap& b) {
+  return std::equal(a.crossings.begin(), a.crossings.end(), b.crossings.begin(), b.crossings.end()) &&
+         std::equal(a.first_depth.begin(), a.first_depth.end(), b.first_depth.begin(), b.first_depth.end());
+}
+
+/// Whether the line through p along the unit vector d crosses the band of half width `radius` about a–b.
+bool meets(Vec3 a, Vec3 b, Vec3 p, Vec3 d, float radius) {
+  const Vec3 e = b - a, w = a - p;
+  const Vec3 e2 = e - d * dot(e, d), w2 = w - d * dot(w, d);
+  const float s = -dot(w2, e2) / dot(e2, e2);
+  return s > 0 && s < 1 && length(w2 + e2 * s) < radius;
+}
+
+TEST(OpacityMap, SlabOfParallelStrandsHasTheClosedForm) {
+  constexpr int kCount = 20000;
+  constexpr float kWidth = 2e-3f, kDepth = 0.5f;
+  const OpacityMap map = map_of(groom_of(slab(kCount, kDepth), kWidth), directional({0, 0, -1}), 64);
+  for (const float share : {0.25f, 0.5f, 1.f}) {
+    const float expected = kCount * kWidth / 2 * share;  // strands per metre of y, times width
+    double mean = 0;
+    int places = 0;
+    for (float y = -0.8f; y < 0.8f; y += 0.02f)
+      for (float x = -0.8f; x < 0.8f; x += 0.4f, ++places)
+        mean += static_cast<double>(crossings_at(map, {x, y, -kDepth * share}));
+    EXPECT_NEAR(mean / places, expected, 0.02 * expected) << share;
+  }
+  EXPECT_EQ(crossings_at(map, {0, 0, 1}), 0);
+  EXPECT_EQ(crossings_at(map, {5, 0, -1}), 0);
+}
+
+TEST(OpacityMap, MeanCrossingsEqualCountingRays) {
+  const std::vector<Straight> lines = thicket(400);
+  constexpr float kWidth = 0.02f;
+  for (const Vec3 direction : {Vec3(0, 0, -1), Vec3(1, -2, 0.5f)}) {
+    const Light light = directional(direction);
+    for (const int size : {32, 256}) {  // strands thinner and wider than a texel
+      const OpacityMap map = map_of(groom_of(lines, kWidth), light, size);
+      double drawn = 0, counted = 0;
+      for (int i = 0; i < 4000; ++i) {
+        Rng rng(3, static_cast<std::uint32_t>(i));
+        const Vec3 p{1.2f * rng.uniform() - 0.6f, 1.2f * rng.uniform() - 0.6f, 1.2f * rng.uniform() - 0.6f};
+        drawn += static_cast<double>(crossings_at(map, p + light.direction * 10.f));
+        for (const Straight& line : lines) counted += meets(line.from, line.to, p, light.direction, kWidth / 2);
+      }
+      EXPECT_NEAR(drawn / counted, 1, 0.03) << size;
+    }
+  }
+}
+
+TEST(OpacityMap, CrossingsGrowWithDepth) {
+  const OpacityMap map = map_of(groom_of(thicket(300), 0.01f), directional({0, 0, -1}), 64);
+  for (float x = -0.5f; x < 0.5f; x += 0.13f) {
+    float before = 0;
+    for (float z = 1.5f; z > -1.5f; z -= 0.01f) {
+      const float n = crossings_at(map, {x, 0.3f, z});
+      EXPECT_GE(n, before - 1e-5f);
+      before = n;
+    }
+  }
+}
+
+TEST(OpacityMap, PointLightSpreadsWithDistance) {
+  Light light;
+  light.type = Light::Type::kPoint;
+  light.position = {0, 0, 3};
+  const OpacityMap map = map_of(groom_of(slab(20000, 0.5f), 2e-3f), light, 128);
+  double mean = 0;
+  int places = 0;
+  for (float y = -0.5f; y < 0.5f; y += 0.01f, ++places) mean += static_cast<double>(crossings_at(map, {0.1f, y, -0.5f}));
+  // A ray at the angle θ in the y–z plane passes density·width/cos θ·cos θ of strands along x: as straight ahead.
+  EXPECT_NEAR(mean / places, 20, 0.6);
+}
+
+TEST(OpacityMap, StridedStrandsCountForThoseLeftOut) {
+  GroomInstance groom = groom_of(slab(20000, 0.5f), 2e-3f);
+  const std::vector<StrandLines> all = strand_lines({groom});
+  const CameraView view = light_views(directional({0, 0, -1}), bounds(all), 32).front();
+  const OpacityMap map = build_opacity_map(all, view, {8});
+  double mean = 0;
+  int places = 0;
+  for (float y = -0.8f; y < 0.8f; y += 0.01f, ++places) mean += static_cast<double>(crossings_at(map, {0, y, -0.5f}));
+  EXPECT_NEAR(mean / places, 20, 1);
+}
+
+TEST(OpacityMap, SameBitsForAnyThreadsAndInstructionSet) {
+  const GroomInstance groom = groom_of(thicket(3000), 0.003f);
+  const Light light = directional({0.3f, -1, 0.2f});
+  set_thread_count(1);
+  const OpacityMap one = map_of(groom, light, 128);
+  for (const int threads : {2, 5}) {
+    set_thread_count(threads);
+    EXPECT_TRUE(same(one, map_of(groom, light, 128))) << threads;
+  }
+  for (const std::string& isa : available_isas()) {
+    set_isa(isa);
+    EXPECT_TRUE(same(one, map_of(groom, light, 128))) << isa;
+  }
+  set_isa("");
+  set_thread_count(0);
+}
+
+TEST(OpacityMap, NoStrandsGiveAnEmptyMap) {
+  GroomInstance groom;
+  groom.strands = std::make_shared<StrandSet>();
+  const OpacityMap map = build_opacity_map(strand_lines({groom}), CameraView{});
+  EXPECT_TRUE(map.crossings.empty());
+  EXPECT_EQ(crossings_at(map, {0, 0, 0}), 0);
+}
+
+}  // namespace
+}  // namespace pelage

@@ -1,0 +1,286 @@
+// Shade against single evaluations of the scattering models, and its invariants.
+#include "shade/shade.h"
+
+#include <gtest/gtest.h>
+#include <pelage/runtime.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/rng.h"
+#include "frame/camera_view.h"
+#include "frame/light_lookup.h"
+#include "frame/segment_lookup.h"
+#include "kernel/scalar.h"
+#include "light/light.h"
+#include "raster/sample_positions.h"
+#include "shade/evaluate.h"
+#include "shade/fiber.h"
+#include "shade/visible.h"
+
+namespace pelage {
+namespace {
+
+constexpr std::array<Vec2, 1> kMiddle{Vec2(0.5f, 0.5f)};
+
+StrandSet linear(const std::vector<std::array<Vec3, 2>>& lines, float width) {
+  StrandSet set;
+  set.basis = CurveBasis::kLinear;
+  set.widths = {width};
+  set.offsets = {0};
+  for (const auto& line : lines) {
+    set.points.insert(set.points.end(), line.begin(), line.end());
+    set.offsets.push_back(static_cast<std::uint32_t>(set.points.size()));
+  }
+  return set;
+}
+
+/// A scene of 32×32 pixels that looks at the origin from +z, one metre away.
+Scene scene_of(StrandSet strands) {
+  Scene scene;
+  scene.grooms.push_back({"", std::make_shared<StrandSet>(std::move(strands)), {}, {}, 1});
+  scene.settings.width = scene.settings.height = 32;
+  scene.settings.opacity_map_size = 64;
+  return scene;
+}
+
+Light directional(Vec3 travels, Vec3 irradiance) {
+  Light light;
+  light.direction = normalize(travels), light.intensity = irradiance;
+  return light;
+}
+
+SegmentNumbering numbering_of(const Scene& scene) {
+  SegmentNumbering numbering;
+  numbering.groom_base.push_back(0);
+  for (const GroomInstance& groom : scene.grooms) {
+    numbering.groom_base.push_back(numbering.groom_base.back() + static_cast<std::uint32_t>(groom.strands->point_count()));
+    numbering.subdivisions.push_back(1);
+  }
+  return numbering;
+}
+
+/// A G-buffer in which random pixels see random segments: shading does not care whether they could.
+GBuffer random_gbuffer(const Scene& scene, int samples) {
+  GBuffer g;
+  g.width = scene.settings.width, g.height = scene.settings.height, g.samples = samples;
+  g.sample_keys.resize(static_cast<std::size_t>(g.width * g.height * samples));
+  const std::uint32_t strands = static_cast<std::uint32_t>(scene.grooms[0].strands->strand_count());
+  for (std::size_t i = 0; i < g.sample_keys.size(); ++i) {
+    Rng rng(5, static_cast<std::uint32_t>(i));
+    const std::uint32_t id = 2 * std::min(static_cast<std::uint32_t>(rng.uniform() * 4 * static_cast<float>(strands)), strands);
+    g.sample_keys[i] = id < 2 * strands ? PixelKey{0x3f800000u} << 32 | id : kEmptyPixel;
+  }
+  return g;
+}
+
+Scene thicket(HairMaterial::Model model) {
+  std::vector<std::array<Vec3, 2>> lines;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    Rng rng(9, i);
+    const auto point = [&] { return Vec3(0.2f * rng.uniform() - 0.1f, 0.2f * rng.uniform() - 0.1f, 0.2f * rng.uniform() - 0.1f); };
+    const Vec3 a = point();
+    lines.push_back({a, point()});
+  }
+  Scene scene = scene_of(linear(lines, 2e-3f));
+  scene.grooms[0].material.model = model;
+  Light point, spot;
+  point.type = Light::Type::kPoint, point.position = {0.3f, 0.4f, 0.3f};
+  spot.type = Light::Type::kSpot, spot.position = {-0.4f, 0.2f, 0.1f}, spot.direction = normalize({1, -0.5f, -0.2f});
+  scene.lights = {directional({0.3f, -1, -0.5f}, {3, 3, 2}), point, spot};
+  scene.environment.radiance = {0.1f, 0.2f, 0.3f};
+  return scene;
+}
+
+Radiance shade_all(const Scene& scene, const GBuffer& gbuffer) {
+  const CameraView view = make_camera_view(scene.camera, scene.settings.width, scene.settings.height);
+  const auto positions = sample_positions(gbuffer.samples);
+  return shade(scene, view, numbering_of(scene), gbuffer, prepare_lights(scene, MeshTracer(scene.meshes)),
+               {positions.data(), static_cast<std::size_t>(gbuffer.samples)});
+}
+
+bool same(const Radiance& a, const Radiance& b) {
+  return a.color.size() == b.color.size() && std::equal(a.index.begin(), a.index.end(), b.index.begin(), b.index.end()) &&
+         std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(Vec3)) == 0;
+}
+
+/// What one strand along +y at the origin sends to the camera at +z, without shadows or multiple scattering.
+Vec3 lone_strand(HairMaterial::Model model, Vec3 travels) {
+  Scene scene = scene_of(linear({{Vec3(0, -0.5f, 0), Vec3(0, 0.5f, 0)}}, 1e-4f));
+  scene.grooms[0].material.model = model;
+  scene.settings.shadows = false, scene.settings.dual_scattering = false;
+  scene.lights.push_back(directional(travels, {2, 3, 4}));
+  GBuffer g;
+  g.width = g.height = 32;
+  g.center.resize(32 * 32);
+  g.center.fill(kEmptyPixel);
+  g.center[16 * 32 + 16] = PixelKey{0x3f800000u} << 32;
+  const CameraView view = make_camera_view(scene.camera, 32, 32);
+  const Radiance r = shade(scene, view, numbering_of(scene), g, prepare_lights(scene, MeshTracer({})), kMiddle);
+  EXPECT_EQ(r.color.size(), 1u);
+  EXPECT_EQ(r.index[16 * 32 + 16], 0u);
+  EXPECT_EQ(r.index[0], Radiance::kNone);
+  return r.color[0];
+}
+
+TEST(Shade, LoneStrandEqualsItsModel) {
+  const HairMaterial material;
+  const kernel::ScatterFiber fiber = make_fiber(material, {});
+  // The pixel's center lies half a pixel off the optical axis: undo it to find the place on the strand.
+  const float y = -0.5f * 2 * std::tan(0.25f) / 32;
+  const Vec3 to_eye = normalize(Vec3(0, -y, 1));
+  for (const Vec3 travels : {Vec3(0, 0, -1), Vec3(0.5f, -0.4f, -1), Vec3(-1, 0.8f, 0.3f), Vec3(0.1f, 0.2f, 1)}) {
+    const Vec3 to_light = -normalize(travels);
+    const float sin_o = to_eye.y, cos_o = std::sqrt(1 - sin_o * sin_o), sin_i = to_light.y, cos_i = std::sqrt(1 - sin_i * sin_i);
+    const float cos_phi = to_light.z / std::sqrt(to_light.x * to_light.x + to_light.z * to_light.z);
+    const auto close = [&](Vec3 shaded, Vec3 model) {
+      const Vec3 expected = model * Vec3(2, 3, 4);
+      EXPECT_NEAR(shaded.x, expected.x, 1e-3f * expected.x + 1e-6f);
+      EXPECT_NEAR(shaded.y, expected.y, 1e-3f * expected.y + 1e-6f);
+      EXPECT_NEAR(shaded.z, expected.z, 1e-3f * expected.z + 1e-6f);
+    };
+    const kernel::ScatterLobes m = kernel::scatter_prepare_marschner(fiber, sin_o, cos_o);
+    close(lone_strand(HairMaterial::Model::kMarschner, travels), kernel::scatter_marschner(m, sin_i, cos_i, cos_phi));
+    close(lone_strand(HairMaterial::Model::kZhu, travels),
+          kernel::scatter_zhu(kernel::scatter_prepare_zhu(fiber, sin_o, cos_o), sin_i, cos_i, cos_phi));
+    const Vec3 tuft = kernel::scatter_tuft_color(fiber.sigma_a, material.beta_azimuthal);
+    close(lone_strand(HairMaterial::Model::kKajiyaKay, travels), kernel::scatter_kajiya_kay(m, tuft, sin_i, cos_i));
+  }
+}
+
+TEST(Shade, SameBitsForAnyThreadsAndInstructionSet) {
+  const Scene scene = thicket(HairMaterial::Model::kMarschner);
+  const GBuffer g = random_gbuffer(scene, 8);
+  set_thread_count(1);
+  const Radiance one = shade_all(scene, g);
+  EXPECT_GT(one.color.size(), 1000u);
+  for (const int threads : {2, 3}) {
+    set_thread_count(threads);
+    EXPECT_TRUE(same(one, shade_all(scene, g))) << threads;
+  }
+  set_thread_count(0);
+  for (const std::string& isa : available_isas()) {
+    set_isa(isa);
+    EXPECT_TRUE(same(one, shade_all(scene, g))) << isa;
+  }
+  set_isa("");
+}
+
+TEST(Shade, WideEqualsScalar) {
+  for (const auto model : {HairMaterial::Model::kKajiyaKay, HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu}) {
+    const Scene scene = thicket(model);
+    const LightRig rig = prepare_lights(scene, MeshTracer({}));
+    const ShadeConstants constants{scene.grooms[0].material, true, light_constants(rig)};
+    ShadeBatch batch;
+    batch.count = 203;
+    for (std::uint32_t i = 0; i < ShadeBatch::kSize + ShadeBatch::kPadding; ++i) {
+      Rng rng(1, i);
+      const auto around = [&] { return 0.3f * rng.uniform() - 0.15f; };
+      const Vec3 tangent = normalize({around(), around(), around()}), eye = normalize({around(), around(), 0.2f});
+      batch.px[i] = around(), batch.py[i] = around(), batch.pz[i] = around();
+      batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
+      batch.ex[i] = eye.x, batch.ey[i] = eye.y, batch.ez[i] = eye.z;
+      batch.absorb_r[i] = rng.uniform(), batch.absorb_g[i] = rng.uniform(), batch.absorb_b[i] = rng.uniform();
+    }
+    ShadeBatch scalar = batch;
+    evaluate_scalar(constants, scalar);
+    for (const std::string& isa : available_isas()) {
+      set_isa(isa);
+      evaluate(constants, batch);
+      for (std::size_t i = 0; i < batch.count; ++i) {
+        EXPECT_EQ(batch.r[i], scalar.r[i]) << isa << " " << i;
+        EXPECT_EQ(batch.g[i], scalar.g[i]) << isa << " " << i;
+        EXPECT_EQ(batch.b[i], scalar.b[i]) << isa << " " << i;
+        EXPECT_TRUE(std::isfinite(scalar.r[i]) && scalar.r[i] >= 0);
+      }
+    }
+    set_isa("");
+  }
+}
+
+TEST(Shade, DirectLightFadesWithTheCrossingsOfTheOpacityMap) {
+  // Without multiple scattering a strand keeps e^−n of the light; n is what crossings_at() says.
+  Scene scene = thicket(HairMaterial::Model::kMarschner);
+  scene.lights.resize(1), scene.environment.radiance = {0, 0, 0};
+  scene.settings.dual_scattering = false;
+  const GBuffer g = random_gbuffer(scene, 1);
+  const Radiance shadowed = shade_all(scene, g);
+  const LightRig rig = prepare_lights(scene, MeshTracer({}));
+  scene.settings.shadows = false;
+  const Radiance lit = shade_all(scene, g);
+  const CameraView view = make_camera_view(scene.camera, 32, 32);
+  const SegmentNumbering numbering = numbering_of(scene);
+  float deepest = 0;
+  for (std::uint32_t p = 0; p < 32 * 32; ++p) {
+    const std::uint32_t i = lit.index[p];
+    if (i == Radiance::kNone || !(lit.color[i].x > 1e-4f)) continue;
+    const SegmentRef s = find_segment(scene, numbering, static_cast<std::uint32_t>(g.sample_keys[p]));
+    const float t = locate_on_segment(scene, numbering, view, s, static_cast<float>(p % 32) + 0.5f, static_cast<float>(p / 32) + 0.5f);
+    const float n = crossings_at(rig.lights[0].opacity, surface_at(scene, numbering, s, t).position);
+    EXPECT_NEAR(shadowed.color[i].x / lit.color[i].x, std::exp(-n), 2e-3f) << p;
+    deepest = std::max(deepest, n);
+  }
+  EXPECT_GT(deepest, 1);
+}
+
+TEST(Shade, MultipleScatteringBrightensBlondHairInShadow) {
+  Scene scene = thicket(HairMaterial::Model::kMarschner);
+  scene.grooms[0].material.eumelanin = 0.1f, scene.grooms[0].material.pheomelanin = 0.05f;
+  const GBuffer g = random_gbuffer(scene, 1);
+  const auto total = [&] {
+    double sum = 0;
+    for (const Vec3 c : shade_all(scene, g).color) sum += static_cast<double>(c.x);
+    return sum;
+  };
+  const double dual = total();
+  scene.settings.dual_scattering = false;
+  const double single = total();
+  EXPECT_GT(dual, 1.3 * single);
+}
+
+TEST(Shade, StrandColorsAreUsedWhereAskedFor) {
+  StrandSet set = linear({{Vec3(-0.01f, -0.5f, 0), Vec3(-0.01f, 0.5f, 0)}, {Vec3(0.01f, -0.5f, 0), Vec3(0.01f, 0.5f, 0)}}, 1e-3f);
+  set.colors = {{0.9f, 0.1f, 0.1f}, {0.1f, 0.1f, 0.9f}};
+  Scene scene = scene_of(std::move(set));
+  scene.grooms[0].material.color_source = HairMaterial::ColorSource::kStrand;
+  scene.lights.push_back(directional({0, 0, -1}, {1, 1, 1}));
+  GBuffer g;
+  g.width = g.height = 32;
+  g.center.resize(32 * 32), g.center.fill(kEmptyPixel);
+  g.center[5] = PixelKey{0x3f800000u} << 32, g.center[6] = PixelKey{0x3f800000u} << 32 | 2;
+  const CameraView view = make_camera_view(scene.camera, 32, 32);
+  const Radiance r = shade(scene, view, numbering_of(scene), g, prepare_lights(scene, MeshTracer({})), kMiddle);
+  ASSERT_EQ(r.color.size(), 2u);
+  EXPECT_GT(r.color[0].x, 1.5f * r.color[0].z);
+  EXPECT_GT(r.color[1].z, 1.5f * r.color[1].x);
+}
+
+TEST(Shade, NothingVisibleAndNoLights) {
+  Scene scene = thicket(HairMaterial::Model::kMarschner);
+  GBuffer g = random_gbuffer(scene, 2);
+  scene.lights.clear(), scene.environment.radiance = {0, 0, 0};
+  for (const Vec3 c : shade_all(scene, g).color) EXPECT_EQ(c, Vec3(0, 0, 0));
+  g.sample_keys.fill(kEmptyPixel);
+  const Radiance none = shade_all(scene, g);
+  EXPECT_TRUE(none.color.empty());
+  for (const std::uint32_t i : none.index) EXPECT_EQ(i, Radiance::kNone);
+}
+
+TEST(VisibleList, OneEntryPerSegmentAndPixel) {
+  const auto key = [](std::uint32_t depth, std::uint32_t id) { return PixelKey{depth} << 32 | id; };
+  const std::vector<PixelKey> keys = {key(5, 1), key(4, 2), key(3, 1), kEmptyPixel,  // pixel 0
+                                      kEmptyPixel, kEmptyPixel, kEmptyPixel, kEmptyPixel,
+                                      key(1, 1), key(1, 1), key(1, 1), key(2, 1)};
+  const VisibleList list = list_visible(keys, 4);
+  ASSERT_EQ(list.samples.size(), 3u);
+  EXPECT_EQ(list.samples[0].key, key(5, 1));
+  EXPECT_EQ(list.samples[1].sample, 1u);
+  EXPECT_EQ(list.samples[2].pixel, 2u);
+  const std::vector<std::uint32_t> index(list.index.begin(), list.index.end());
+  const std::uint32_t none = Radiance::kNone;
+  EXPECT_EQ(index, (std::vector<std::uint32_t>{0, 1, 0, none, none, none, none, none, 2, 2, 2, 2}));
+}
+
+}  // namespace
+}  // namespace pelage
