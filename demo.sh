@@ -9,31 +9,38 @@ install_packages $PELAGE_BUILD_PACKAGES
 
 cmake --preset release -B build/demo -D PELAGE_TESTS=OFF >/dev/null
 cmake --build build/demo
-pelage=build/demo/apps/cli/pelage
+pelage=build/demo/bin/pelage
 data=${PELAGE_DATA:-../shared/data}
-size=${PELAGE_DEMO_SIZE:-1280x1280}
 mkdir -p out
 
-# picture NAME ARGUMENT…: renders out/NAME.png, says so, and shows the command.
+# say COMMAND…: shows the command, then runs it.
+say() {
+  echo "+ pelage $*"
+  "$pelage" "$@"
+}
+# picture NAME ARGUMENT…: renders out/NAME.png.
 pictures=()
 picture() {
   local file=out/$1.png
   shift
-  echo "+ pelage render $* -o $file"
-  "$pelage" render "$@" --size "$size" -o "$file"
-  pictures+=("$file")
+  say render "$@" --size "${PELAGE_DEMO_SIZE:-1024x1024}" -o "$file"
+  pictures+=("$PWD/$file")
 }
 
-for style in straight wavy curly afro ponytail; do
-  "$pelage" grow "$style" -o "out/$style.pelage"
-  picture "$style" "out/$style.pelage" --mesh mannequin
+hair=(straight:light-brown wavy:red curly:brown afro:black ponytail:blond coat:white)
+for style in "${hair[@]}"; do
+  say grow "${style%:*}" -o "out/${style%:*}.pelage" --write-mesh out/head.obj
+  picture "${style%:*}" "out/${style%:*}.pelage" --mesh out/head.obj --hair "${style#*:}"
 done
 
 sintel=$data/grooms/SintelHairOriginal-sintel_hair.16points.tfx
-[ -f "$sintel" ] && picture sintel "$sintel" --mesh "$data/meshes/sintel.obj"
-ratboy=$data/grooms/Ratboy_mohawk.tfx
-[ -f "$ratboy" ] && picture ratboy "$ratboy"
+if [ -f "$sintel" ]; then
+  picture sintel "$sintel" --mesh "$data/meshes/sintel.obj" --mesh "$data/meshes/sintel-eyes.obj" --hair red
+  picture ratboy "$data/grooms/Ratboy_mohawk.tfx"
+else
+  echo "No real grooms in $data (README.md says where to find some); set PELAGE_DATA to their folder."
+fi
 
 echo
 echo "Open these pictures:"
-printf '  %s\n' "${pictures[@]/#/$PWD/}"
+printf '  %s\n' "${pictures[@]}"
