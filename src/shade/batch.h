@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "shade/dual_scattering_tables.h"
 
 namespace pelage {
 
@@ -54,11 +55,14 @@ struct ShadeConstants {
   HairMaterial material;
   bool dual_scattering = true;
   std::vector<LightConstants> lights;
+  ForwardAttenuationTable attenuation;  ///< of the material; empty where there is no dual scattering
 };
 
 /// Radians: a light of more spread than this counts as coming from a half circle of azimuths.
 inline constexpr float kWideSpread = 0.25f;
 
 std::vector<LightConstants> light_constants(const LightRig& rig);
+/// Makes the material's table where dual scattering is on and the model knows it (Kajiya-Kay does not).
+ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig);
 
 }  // namespace pelage

@@ -169,6 +169,20 @@ PELAGE_LANES_FN Vec3 shade_forwarded(HairMaterial::Model model, const ShadePlace
   return forward + scatter_dual_local(s.back, variance, a.sin_i, a.cos_i, a.cos_phi);
 }
 
+// Mean forward attenuation of the fibers that a light passes on its way here: they lie like this one, so light meets them
+// at its own inclination, not at the eye's.
+PELAGE_LANES_FN Vec3 shade_forward_attenuation(const ForwardAttenuationTable& table, const ShadePlace& s, Float cos_i) {
+  const auto channel = [&](Float sigma_a) {
+    const ScatterTableCell c = scatter_table_cell(cos_i, sigma_a);
+    const float* v = table.a_f.data();
+    const Int corner = to_int(c.index);
+    const auto next_row = static_cast<std::size_t>(kScatterTableColumns);
+    return scatter_table_mix(c, gather(v, corner), gather(v + 1, corner), gather(v + next_row, corner),
+                             gather(v + next_row + 1, corner));
+  };
+  return Vec3(channel(s.fiber.sigma_a.x), channel(s.fiber.sigma_a.y), channel(s.fiber.sigma_a.z));
+}
+
 // Share of light that n fibers let pass to a Kajiya-Kay fiber: half of what its diffuse lobe scatters goes on.
 PELAGE_LANES_FN Vec3 shade_kajiya_kay_transmittance(const ShadePlace& s, Float n) {
   return v_exp((s.tuft_color * Float(0.5f) - v_splat(Float(1.0f))) * n);
@@ -186,7 +200,8 @@ PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, c
   const Float spread(light.spread2);
   const Vec3 local = scatter_dual_local(s.back, spread, a.sin_i, a.cos_i, a.cos_phi) * scatter_dual_direct(n);
   const Vec3 forwarded = shade_forwarded(k.material.model, s, scatter_dual_variance(n, s.averages.v_f) + spread, a);
-  return arriving * (direct + local + forwarded * scatter_dual_transmittance(n, s.averages.a_f));
+  const Vec3 a_f = shade_forward_attenuation(k.attenuation, s, a.cos_i);
+  return arriving * (direct + local + forwarded * scatter_dual_transmittance(n, a_f));
 }
 
 // Fills r, g, b of the batch.

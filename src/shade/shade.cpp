@@ -107,7 +107,7 @@ Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumberin
   const Gather gather{scene, view, numbering, sample_positions};
   std::vector<ShadeConstants> constants;
   for (const GroomInstance& groom : scene.grooms)
-    constants.push_back({groom.material, scene.settings.dual_scattering, light_constants(rig)});
+    constants.push_back(shade_constants(groom.material, scene.settings.dual_scattering, rig));
   parallel_for(list.samples.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
     ShadeBatch batch;
     shade_block(gather, constants, {list.samples.data() + begin, end - begin}, batch, radiance.color.data() + begin);

@@ -171,7 +171,7 @@ TEST(Shade, WideEqualsScalar) {
   for (const auto model : {HairMaterial::Model::kKajiyaKay, HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu}) {
     const Scene scene = thicket(model);
     const LightRig rig = prepare_lights(scene, MeshTracer({}));
-    const ShadeConstants constants{scene.grooms[0].material, true, light_constants(rig)};
+    const ShadeConstants constants = shade_constants(scene.grooms[0].material, true, rig);
     ShadeBatch batch;
     batch.count = 203;
     for (std::uint32_t i = 0; i < ShadeBatch::kSize + ShadeBatch::kPadding; ++i) {
