@@ -5,11 +5,13 @@ namespace pelage::bench {
 
 void add_assemble_cases(Suite& suite);
 void add_raster_cases(Suite& suite);
+void add_frame_cases(Suite& suite);
 
 Suite all_cases() {
   Suite suite;
   add_assemble_cases(suite);
   add_raster_cases(suite);
+  add_frame_cases(suite);
   return suite;
 }
 

@@ -2,6 +2,7 @@
 #include <pelage/runtime.h>
 
 #include <hwy/highway.h>
+#include <tbb/global_control.h>
 
 #include <memory>
 #include <mutex>
@@ -15,6 +16,7 @@ namespace {
 struct Arena {
   std::mutex mutex;
   int threads = 0;
+  std::unique_ptr<tbb::global_control> limit;  // lets more threads than cores run: TBB would warn on standard error
   std::unique_ptr<tbb::task_arena> arena;
 };
 Arena& state() {
@@ -33,6 +35,7 @@ void set_thread_count(int threads) {
   Arena& s = state();
   const std::lock_guard lock(s.mutex);
   s.threads = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  s.limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(s.threads));
   s.arena = std::make_unique<tbb::task_arena>(s.threads);
 }
 

@@ -191,9 +191,9 @@ RenderResult render(const Scene& scene, const Progress& progress) {
       return StageWork{frame.rig.lights.size(), resident_bytes(frame.rig)};
     });
     result.linear = render_beauty(frame, stages);
-    stages.run("composite", "pixels", [&](const Progress&) {
+    stages.run("display", "pixels", [&](const Progress&) {
       result.display = make_display(result.linear, settings.tone_map);
-      return StageWork{0, 2 * result.display.pixels.size() * sizeof(float)};
+      return StageWork{result.display.pixels.size() / 4, result.display.pixels.size() * sizeof(float)};
     });
   } else {
     DebugView debug = render_debug_view(frame, stages);

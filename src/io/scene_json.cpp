@@ -50,7 +50,11 @@ class LineNotes final : public nlohmann::json_sax<json> {
  public:
   LineNotes(const int& line, std::map<std::string, int>& lines) : line_(line), lines_(lines) {}
 
-  const std::optional<std::string>& repeated_key() const { return repeated_; }
+  struct Repeated {
+    std::string pointer;
+    int line;
+  };
+  const std::optional<Repeated>& repeated_key() const { return repeated_; }
 
   bool null() override { return next(); }
   bool boolean(bool) override { return next(); }
@@ -65,7 +69,7 @@ class LineNotes final : public nlohmann::json_sax<json> {
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
     open_.back().key = name;
-    if (!lines_.emplace(pointer(), line_).second && !repeated_) repeated_ = pointer();
+    if (!lines_.emplace(pointer(), line_).second && !repeated_) repeated_ = Repeated{pointer(), line_};
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
@@ -103,7 +107,7 @@ class LineNotes final : public nlohmann::json_sax<json> {
   std::map<std::string, int>& lines_;
   std::vector<Container> open_;
   std::string path_;
-  std::optional<std::string> repeated_;
+  std::optional<Repeated> repeated_;
 };
 
 // "[json.exception.parse_error.101] parse error at line 3, column 5: …" without what a person cannot use.
@@ -126,7 +130,7 @@ JsonDocument::JsonDocument(std::string name, const std::vector<char>& text) : na
   LineNotes notes(line, lines_);
   json::sax_parse(CountingIterator(begin, &line), CountingIterator(end, &line), &notes);
   if (const auto& repeated = notes.repeated_key())
-    throw Error(name_, fmt::format("line {}: {}", line_of(*repeated), *repeated), "this key is given twice", "keep one");
+    throw Error(name_, fmt::format("line {}: {}", repeated->line, repeated->pointer), "this key is given twice", "keep one");
 }
 
 int JsonDocument::line_of(const std::string& pointer) const {

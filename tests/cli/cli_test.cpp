@@ -1,0 +1,268 @@
+// The pelage command as a user meets it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+namespace pelage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string slurp(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int status;  // exit status, or 128 + signal
+  std::string out, err;
+};
+
+int status_of(int wait_status) { return WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 128 + WTERMSIG(wait_status); }
+
+class Cli : public testing::Test {
+ protected:
+  Cli() {
+    folder_ = fs::path(testing::TempDir()) / ("cli_" + std::to_string(getpid()) + "_" +
+                                              testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  ~Cli() override { fs::remove_all(folder_); }
+
+  fs::path in(const std::string& name) const { return folder_ / name; }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" PELAGE_COMMAND "' " + arguments + " >.out 2>.err </dev/null";
+    const int status = std::system(command.c_str());
+    return {status_of(status), slurp(in(".out")), slurp(in(".err"))};
+  }
+  void make_hair() const {
+    const Outcome made = run("grow curly --strands 300 --points 16 -o hair.pelage");
+    ASSERT_EQ(made.status, 0) << made.err;
+  }
+  // What lies in the folder but the streams' own files and `hair.pelage`.
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      if (name != ".out" && name != ".err" && name != "hair.pelage") names.push_back(name);
+    }
+    return names;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Cli, HelpAndVersionSucceed) {
+  EXPECT_THAT(run("--version").out, HasSubstr("pelage 0."));
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* verb : {"grow", "info", "convert", "render", "bench"}) {
+    EXPECT_THAT(help.out, HasSubstr(verb));
+    const Outcome verb_help = run(std::string(verb) + " --help");
+    EXPECT_EQ(verb_help.status, 0) << verb;
+    EXPECT_THAT(verb_help.out, HasSubstr(std::string("pelage ") + verb)) << "an example";
+  }
+}
+
+TEST_F(Cli, UsageErrorsNameTheNearest) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"rendr x", "did you mean render?"},          {"redner", "did you mean render?"},
+      {"render x -o a.png --siez 1x1", "did you mean --size?"}, {"bench --lst", "did you mean --list?"},
+      {"render x -o a.png --view dept", "did you mean `depth`?"}, {"render x -o a.png --hair blonde", "did you mean `blond`?"},
+      {"render", "INPUT"},                          {"render x", "--output"},
+      {"render x -o a.png --spp 3", "--spp"},       {"render x -o a.png --threads -1", "--threads"},
+      {"render x -o a.png --isa MMX", "--isa"},     {"", "subcommand"},
+  };
+  make_hair();
+  for (const auto& [arguments, words] : cases) {
+    std::string line = arguments;
+    if (const std::size_t x = line.find(" x"); x != std::string::npos) line.replace(x, 2, " hair.pelage");
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.status, 2) << line << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << line;
+    EXPECT_EQ(outcome.out, "") << line;
+  }
+  EXPECT_THAT(files(), testing::IsEmpty());
+}
+
+TEST_F(Cli, BadFilesFailWithAMessageAndNoOutput) {
+  make_hair();
+  std::ofstream(in("empty.hair"));
+  std::ofstream(in("noise.hair")) << "these are no strands at all, whatever their name says";
+  fs::create_directory(in("folder"));
+  std::ofstream(in("none.data"), std::ios::binary) << std::string(4, '\0');  // USC: no strands announced
+  std::ofstream(in("scene.json")) << "{\"grooms\": [{\"flie\": \"hair.pelage\"}]}";
+  const std::string whole = slurp(in("hair.pelage"));
+  std::ofstream(in("cut.pelage"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+  for (const char* input : {"missing.hair", "folder", "empty.hair", "noise.hair", "none.data", "cut.pelage", "scene.json"}) {
+    const Outcome outcome = run(std::string("render ") + input + " -o out.png");
+    EXPECT_EQ(outcome.status, 1) << input;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("pelage: ") + input)) << "names the file";
+    EXPECT_FALSE(fs::exists(in("out.png"))) << input;
+  }
+  EXPECT_THAT(run("render hair.pelage --mesh missing.obj -o out.png").err, HasSubstr("missing.obj"));
+  EXPECT_FALSE(fs::exists(in("out.png")));
+}
+
+TEST_F(Cli, UnwritableOutputsFailBeforeTheWork) {
+  make_hair();
+  fs::create_directory(in("folder.png"));
+  std::ofstream(in("file"));
+  for (const char* output : {"nowhere/out.png", "folder.png", "file/out.png", "out.bmp", "out"}) {
+    const Outcome outcome = run(std::string("render hair.pelage --size 8x8 -o ") + output);
+    EXPECT_EQ(outcome.status, 1) << output;
+    EXPECT_THAT(outcome.err, HasSubstr(output));
+  }
+  // The input does not exist: that the output is told shows that it is looked at first.
+  EXPECT_THAT(run("render missing.hair -o nowhere/out.png").err, HasSubstr("nowhere"));
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("folder.png", "file"));
+}
+
+TEST_F(Cli, AFullDiskIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  make_hair();
+  fs::create_symlink("/dev/full", in("out.png"));
+  const Outcome outcome = run("render hair.pelage --size 64x64 -o out.png");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("No space left"));
+}
+
+TEST_F(Cli, AFailedRenderLeavesTheOldPicture) {
+  make_hair();
+  std::ofstream(in("out.png")) << "old";
+  EXPECT_EQ(run("render missing.hair -o out.png").status, 1);
+  EXPECT_EQ(slurp(in("out.png")), "old");
+  EXPECT_THAT(files(), testing::ElementsAre("out.png"));
+}
+
+TEST_F(Cli, WritesEveryKindOfPicture) {
+  make_hair();
+  const Outcome outcome = run("render hair.pelage --size 40x30 --spp 2 -o a.png -o a.exr -o a.hdr --layers Z,coverage,id");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(slurp(in("a.png")).substr(1, 3), "PNG");
+  EXPECT_EQ(slurp(in("a.exr")).substr(0, 4), "\x76\x2f\x31\x01");
+  EXPECT_EQ(slurp(in("a.hdr")).substr(0, 2), "#?");
+  EXPECT_THAT(slurp(in("a.exr")), testing::AllOf(HasSubstr("coverage"), HasSubstr("id.R")));
+  EXPECT_EQ(outcome.out, "") << "quiet when all is well";
+}
+
+TEST_F(Cli, JsonIsTheSameForAnyThreads) {
+  make_hair();
+  std::string hash, picture;
+  for (const char* threads : {"1", "2", "5"}) {
+    const Outcome outcome = run(std::string("render hair.pelage --size 64x48 -o out.png --json --threads ") + threads);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json["width"], 64);
+    EXPECT_GT(json["peak_bytes"], 0);
+    EXPECT_EQ(json["stages"][1]["stage"], "groom");
+    EXPECT_EQ(json["stages"][1]["items"], 300 * 16);
+    if (hash.empty()) hash = json["hash"], picture = slurp(in("out.png"));
+    EXPECT_EQ(json["hash"], hash);
+    EXPECT_EQ(slurp(in("out.png")), picture) << "byte for byte";
+    EXPECT_THAT(outcome.err, Not(HasSubstr("Warning")));
+  }
+}
+
+TEST_F(Cli, StatsNameTheStages) {
+  make_hair();
+  const Outcome outcome = run("render hair.pelage --size 64x48 -o out.png --stats");
+  for (const char* stage : {"io.read", "groom", "light", "raster", "shade", "composite", "bytes per control point"})
+    EXPECT_THAT(outcome.out, HasSubstr(stage));
+}
+
+TEST_F(Cli, OptionsReachThePicture) {
+  make_hair();
+  const auto hash = [&](const std::string& options) {
+    const Outcome outcome = run("render hair.pelage --size 64x48 -o out.png --json " + options);
+    EXPECT_EQ(outcome.status, 0) << options << outcome.err;
+    return outcome.status ? "" : nlohmann::json::parse(outcome.out)["hash"].get<std::string>();
+  };
+  const std::string plain = hash("");
+  for (const char* options :
+       {"--spp 16", "--view u", "--view depth", "--exposure 1", "--background 1,0,0", "--background transparent", "--eye 1,0,0",
+        "--target 0,0.1,0", "--fov 60", "--turn 90", "--ortho", "--light point:0,1,1:2,2,2", "--light directional:0,-1,0:3,3,3",
+        "--no-shadows", "--hair blond", "--color 0.9,0.1,0.1", "--melanin 4", "--model kajiya-kay", "--model zhu",
+        "--width-scale 3", "--no-dual-scattering"})
+    EXPECT_NE(hash(options), plain) << options;
+}
+
+TEST_F(Cli, ScenesRender) {
+  make_hair();
+  std::ofstream(in("scene.json")) << R"({"grooms": [{"file": "hair.pelage"}], "meshes": [{"shape": "mannequin"}],
+                                          "settings": {"width": 40, "height": 30, "samples": 2}})";
+  EXPECT_EQ(run("render scene.json -o out.png").status, 0);
+  const Outcome larger = run("render scene.json -o out.png --size 50x20 --json");
+  EXPECT_EQ(nlohmann::json::parse(larger.out)["width"], 50) << "options win over the file";
+  EXPECT_EQ(nlohmann::json::parse(run("render --schema").out)["title"], "Pelage scene");
+}
+
+TEST_F(Cli, BenchWritesALineAJsonAndRefusesUnknownNames) {
+  const Outcome list = run("bench --list");
+  EXPECT_THAT(list.out, testing::AllOf(HasSubstr("raster.centre.curly50k"), HasSubstr("frame.beauty.sintel")));
+  const Outcome unknown = run("bench raster.cnter.curly50k");
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("raster.centre.curly50k"));
+  EXPECT_EQ(run("bench '('").status, 1);
+}
+
+// Runs on a terminal of its own; returns what it wrote there.
+Outcome run_on_terminal(const fs::path& folder, const std::vector<std::string>& arguments, int interrupt_after_ms = 0) {
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    std::vector<char*> argv{const_cast<char*>(PELAGE_COMMAND)};
+    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    if (chdir(folder.c_str()) == 0) execv(PELAGE_COMMAND, argv.data());
+    _exit(127);
+  }
+  std::thread interrupter([=] {
+    if (!interrupt_after_ms) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(interrupt_after_ms));
+    kill(child, SIGINT);
+  });
+  std::string text;
+  char buffer[4096];
+  for (ssize_t n; (n = read(terminal, buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
+  int status = 0;
+  waitpid(child, &status, 0);
+  interrupter.join();
+  close(terminal);
+  return {status_of(status), text, text};
+}
+
+const std::vector<std::string> kLongWork{"grow", "curly", "--strands", "120000", "--points", "64", "-o", "long.pelage"};
+
+TEST_F(Cli, ProgressShowsOnATerminalOnly) {
+  const Outcome shown = run_on_terminal(folder_, kLongWork);
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  EXPECT_THAT(shown.err, HasSubstr("%")) << "work of more than a second";
+  std::string line;
+  for (const std::string& a : kLongWork) line += a + " ";
+  EXPECT_THAT(run(line).err, Not(HasSubstr("%")));
+}
+
+TEST_F(Cli, AnInterruptLeavesNoFile) {
+  const Outcome stopped = run_on_terminal(folder_, kLongWork, 400);
+  EXPECT_EQ(stopped.status, 128 + SIGINT) << stopped.err;
+  EXPECT_THAT(files(), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace pelage
