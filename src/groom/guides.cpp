@@ -81,8 +81,9 @@ class GuideGrower {
       if (ground_.scalp)
         direction = normalize(direction + Vec3(0, 0, step_) * (shoulder_pull(p, front) / 0.035f - sweep_back(p) / 0.03f));
       Vec3 next = p + direction * step_;
-      if (ground_.collider)
-        next = push_out(*ground_.collider, next, std::min(0.4f * s, 0.0012f + layer * smoothstep(0.f, 0.10f, s)));
+      const float clearance = std::min(0.4f * s, 0.0012f + layer * smoothstep(0.f, 0.10f, s));
+      next = ground_.collider ? push_out(*ground_.collider, next, clearance)
+                              : keep_above(root.position, root.normal, ground_.size, next, clearance);
       if (ground_.scalp) next = push_out_of_face(next, smoothstep(0.f, 0.04f, s));
       direction = normalize(next - p);
       p = p + direction * step_;

@@ -56,7 +56,7 @@ float ear(float d, Vec3 q) {
   float e = sd_ellipsoid(p, {0.0085f, 0.031f, 0.0180f});
   e = smooth_union(e, sd_ellipsoid(p - Vec3(0, -0.024f, 0.004f), {0.006f, 0.010f, 0.009f}), 0.008f);
   e = smooth_difference(e, sd_ellipsoid(p - Vec3(0.0085f, 0.003f, 0.002f), {0.0070f, 0.0200f, 0.0100f}), 0.005f);
-  return smooth_union(d, e, 0.008f);
+  return smooth_union(d, e, 0.012f);
 }
 
 float bust(Vec3 q) {

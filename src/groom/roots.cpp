@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t kDartStream = 0x726f6f74u;  // keeps darts apart from the strands' random numbers
 constexpr int kPatience = 100;         // darts that may miss in a row before all later discs shrink
+constexpr float kThinnest = 0.1f;      // density below which discs grow no further
 constexpr float kLargestRadius = 8;    // in spacings; bounds the cells that the first darts look at
 
 void check_mesh(const TriangleMesh& mesh) {
@@ -49,8 +50,8 @@ class SurfaceSampler {
 
   double area() const { return area_; }
 
-  /// False: the place was rejected by the density.
-  bool draw(Rng& rng, Root* root) const {
+  /// A place and the density there; 0 where the density rejected it.
+  float draw(Rng& rng, Root* root) const {
     const double target = static_cast<double>(rng.uniform()) + static_cast<double>(rng.uniform()) * 0x1p-24;
     const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target * cumulative_.back());
     const std::size_t t = std::min<std::size_t>(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1);
@@ -64,12 +65,13 @@ class SurfaceSampler {
       if (!mesh_.normals.empty()) n = n + mesh_.normals[triangle[i]] * w[i];
       if (!mesh_.uv.empty()) uv = uv + mesh_.uv[triangle[i]] * w[i];
     }
-    if (density_ && rng.uniform() >= density_(p)) return false;
+    const float density = density_ ? density_(p) : 1;
+    if (rng.uniform() >= density) return 0;
     if (!(dot(n, n) > 1e-12f) || !is_finite(n))
       n = cross(mesh_.positions[triangle[1]] - mesh_.positions[triangle[0]],
                 mesh_.positions[triangle[2]] - mesh_.positions[triangle[0]]);
     *root = {p, normalize(n), uv};
-    return true;
+    return density;
   }
 
  private:
@@ -98,7 +100,8 @@ std::vector<Root> scatter_roots(const TriangleMesh& mesh, std::size_t count, std
     const float radius = spacing * std::min(packing / std::sqrt(fill), kLargestRadius);
     Rng rng(seed, kDartStream, dart * 8u);
     Root root;
-    if (!sampler.draw(rng, &root) || taken.any_within(root.position, radius)) continue;
+    const float here = sampler.draw(rng, &root);
+    if (here <= 0 || taken.any_within(root.position, radius / std::sqrt(std::max(here, kThinnest)))) continue;
     taken.insert(root.position);
     roots.push_back(root);
     misses = 0;

@@ -106,12 +106,21 @@ class StrandFiller {
   HairGroup fill(std::uint32_t root, std::size_t points, Vec3* position, float* width) const;
 
  private:
+  struct GuidePlace {
+    Vec3 position, side, up;
+  };
+  struct Attachment {
+    Vec3 world, local;  // offset from the guide's root: in the world, and in the guide's first frame
+    float reach;        // 0…1, how far it turns and gathers with the guide
+  };
+
   Lock make_lock(std::uint32_t g) const;
   Traits draw_traits(std::uint32_t root, Rng& rng) const;
   float draw_length(const Lock& lock, Vec3 root, Rng& rng) const;
-  Vec3 offset_from(std::uint32_t g, Vec3 root) const;
-  Vec3 follow(std::uint32_t g, Vec3 offset, float s) const;
-  Vec3 curl(std::uint32_t g, float s, float angle, float radius) const;
+  Attachment attach(std::uint32_t g, Vec3 offset, float strand_length) const;
+  GuidePlace guide_at(std::uint32_t g, float s) const;
+  Vec3 carry(const GuidePlace& place, const Attachment& a, float close) const;
+  Vec3 curl(const GuidePlace& place, float angle, float radius) const;
   float tie_squeeze(std::uint32_t g, float s) const;
   Vec3 outward(const Root& root, Vec3 p) const;
 
@@ -165,28 +174,34 @@ Traits StrandFiller::draw_traits(std::uint32_t root, Rng& rng) const {
   return t;
 }
 
-/// The place `root` in the frame in which guide `g` starts.
-Vec3 StrandFiller::offset_from(std::uint32_t g, Vec3 root) const {
+/// How something `offset` beside the root of guide `g` goes along with it.
+StrandFiller::Attachment StrandFiller::attach(std::uint32_t g, Vec3 offset, float strand_length) const {
   const std::size_t at = g * static_cast<std::size_t>(guides_.points);
-  const Vec3 d = root - guides_.position[at], side = guides_.side[at], up = guides_.up[at];
-  return {dot(d, side), dot(d, up), dot(d, cross(side, up))};
+  const Vec3 side = guides_.side[at], up = guides_.up[at];
+  const float distance = length(offset);
+  // What is farther away than it is long must not swing with the guide like a door.
+  const float reach = distance > 0 ? saturate(strand_length / (2 * distance)) : 1;
+  return {offset, {dot(offset, side), dot(offset, up), dot(offset, cross(side, up))}, reach};
 }
 
-/// Where one is that travels with guide `g`, `offset` beside it, after arc length `s`.
-Vec3 StrandFiller::follow(std::uint32_t g, Vec3 offset, float s) const {
+/// Guide `g` after arc length `s`.
+StrandFiller::GuidePlace StrandFiller::guide_at(std::uint32_t g, float s) const {
   const float x = std::clamp(s / guides_.step, 0.f, static_cast<float>(guides_.points) - 1.001f);
   const std::size_t i = static_cast<std::size_t>(x), at = g * static_cast<std::size_t>(guides_.points) + i;
   const float t = x - static_cast<float>(i);
-  const Vec3 side = lerp(guides_.side[at], guides_.side[at + 1], t), up = lerp(guides_.up[at], guides_.up[at + 1], t);
-  return lerp(guides_.position[at], guides_.position[at + 1], t) + side * offset.x + up * offset.y +
-         cross(side, up) * offset.z;
+  return {lerp(guides_.position[at], guides_.position[at + 1], t), lerp(guides_.side[at], guides_.side[at + 1], t),
+          lerp(guides_.up[at], guides_.up[at + 1], t)};
 }
 
-Vec3 StrandFiller::curl(std::uint32_t g, float s, float angle, float radius) const {
-  const std::size_t last = static_cast<std::size_t>(guides_.points - 1);
-  const std::size_t at = g * (last + 1) + std::min(static_cast<std::size_t>(s / guides_.step), last);
+/// The offset of `a` where its guide has come to `place`, scaled by `close` as far as it reaches.
+Vec3 StrandFiller::carry(const GuidePlace& place, const Attachment& a, float close) const {
+  const Vec3 turned = place.side * a.local.x + place.up * a.local.y + cross(place.side, place.up) * a.local.z;
+  return lerp(a.world, turned, a.reach) * mix(1.f, close, a.reach);
+}
+
+Vec3 StrandFiller::curl(const GuidePlace& place, float angle, float radius) const {
   // A flat wave swings sideways over the skin, not into it.
-  return guides_.up[at] * (std::cos(angle) * radius) + guides_.side[at] * (std::sin(angle) * radius * style_.ellipticity);
+  return place.up * (std::cos(angle) * radius) + place.side * (std::sin(angle) * radius * style_.ellipticity);
 }
 
 /// Factor on a strand's offset from its guide: the tie of a ponytail presses all strands together.
@@ -211,11 +226,10 @@ HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* posi
   const float step = t.length / static_cast<float>(points - 1);
   Frizz frizz(rng, step);
 
-  Vec3 offset[kBlend], tuft[kBlend];  // from each guide, of the strand and of the middle of its tuft
-  for (int k = 0; k < kBlend; ++k) {
-    offset[k] = offset_from(m.guide[k], root.position);
-    tuft[k] = t.stray > 0 ? offset[k] : offset_from(m.guide[k], roots_[m.tuft].position);
-  }
+  Attachment attached[kBlend];
+  for (int k = 0; k < kBlend; ++k)
+    attached[k] = attach(m.guide[k], root.position - guides_.roots[m.guide[k]].position, t.length);
+  const Attachment to_tuft = attach(own, t.stray > 0 ? Vec3() : roots_[m.tuft].position - root.position, t.length);
   const float loyalty = saturate(2 * t.tightness);  // how much of the own lock alone shapes the tip
   const float slope = kTwoPi * t.radius / lock.pitch * std::sqrt(0.5f * (1 + square(style_.ellipticity)));
 
@@ -229,18 +243,21 @@ HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* posi
 
     const float gather = smoothstep(lock.start, 0.7f, u), fine = std::max(style_.tuft, 0.8f * t.tightness) * smoothstep(0.f, 0.5f, u);
     const float close = (1 - t.tightness * gather) * tie_squeeze(own, axis), apart = 1 - loyalty * gather;
-    Vec3 p = follow(own, lerp(offset[0], tuft[0], fine) * close, axis);
-    Vec3 blend;
-    for (int k = 1; k < kBlend && apart > 0; ++k)
-      blend = blend + (follow(m.guide[k], lerp(offset[k], tuft[k], fine) * close, axis) - p) * (m.weight[k] * apart);
-    p = p + blend;
+    const GuidePlace own_place = guide_at(own, axis);
+    Vec3 p = own_place.position + carry(own_place, attached[0], close), blend;
+    for (int k = 1; k < kBlend && apart > 0; ++k) {
+      const GuidePlace place = guide_at(m.guide[k], axis);
+      blend = blend + (place.position + carry(place, attached[k], close) - p) * (m.weight[k] * apart);
+    }
+    p = p + blend + carry(own_place, to_tuft, close) * fine * to_tuft.reach;
     if (t.radius > 0) {
       const float wobble = 0.9f * std::sin(axis * 23.f + lock.phase);
-      p = p + curl(own, axis, t.phase + lock.handedness * (kTwoPi * axis / lock.pitch + wobble), t.radius * grown);
+      p = p + curl(own_place, t.phase + lock.handedness * (kTwoPi * axis / lock.pitch + wobble), t.radius * grown);
     }
     p = p + frizz.next() * (t.frizz * u * (0.3f + 0.7f * u));
     if (t.stray > 0) p = p + outward(root, p) * (t.stray * square(u));
-    if (ground_.collider) p = push_out(*ground_.collider, p, std::min(0.3f * s, 0.0008f));
+    const float clearance = std::min(0.3f * s, 0.0008f);
+    p = ground_.collider ? push_out(*ground_.collider, p, clearance) : keep_above(root.position, root.normal, ground_.size, p, clearance);
     position[j] = p;
     width[j] = t.width * (1 - s_.taper * square(u));
   }
