@@ -11,6 +11,8 @@
 #include "assemble/assemble.h"
 #include "core/check.h"
 #include "core/parallel.h"
+#include "raster/analytic.h"
+#include "raster/band_area.h"
 #include "raster/band_walk.h"
 #include "raster/fragments.h"
 #include "raster/gbuffer.h"
@@ -26,6 +28,7 @@ constexpr std::size_t kStrandsPerTask = 64;
 struct Worker {
   ScreenBlock block;
   FragmentBuffer fragments;
+  StrandAreas areas;
 };
 
 void count_overdraw(const ScreenBlock& block, GBuffer& out) {
@@ -39,11 +42,24 @@ void count_overdraw(const ScreenBlock& block, GBuffer& out) {
   }
 }
 
+void raster_conservative(const ScreenBlock& block, GBuffer& out) {
+  const std::size_t width = static_cast<std::size_t>(out.width);
+  for (std::size_t j = 0; j + 1 < block.count; ++j) {
+    if (block.id[j] == ScreenBlock::kNoSegment) continue;
+    walk_touched(band_at(block, j), out.width, out.height, [&](int x, int y, float depth) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+      atomic_min(out.conservative[pixel], pixel_key(depth, block.id[j]));
+    });
+  }
+}
+
 void raster_block(Worker& worker, const RasterLayers& layers, GBuffer& out) {
   const ScreenBlock& block = worker.block;
   if (layers.center) raster_center(block, out.width, out.height, worker.fragments, out.center.data());
   if (layers.samples > 0)
     raster_samples(block, out.width, out.height, layers.samples, worker.fragments, out.sample_keys.data());
+  if (layers.conservative) raster_conservative(block, out);
+  if (layers.analytic) raster_analytic(block, worker.areas, out);
   if (layers.overdraw) count_overdraw(block, out);
 }
 
@@ -68,29 +84,45 @@ class SharedProgress {
   std::mutex mutex_;
 };
 
-}  // namespace
-
-std::uint64_t raster_strands(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
-                             const RasterLayers& layers, GBuffer& out, const Progress& progress) {
-  clear_gbuffer(view, layers, out);
-  std::uint64_t strands = 0;
-  for (const GroomInstance& groom : scene.grooms) strands += groom.strands->strand_count();
-  SharedProgress shared(progress, std::max<std::uint64_t>(1, strands));
+/// Assembles all strands before `view` and enters them into `out`, task by task. Returns the number of segments.
+std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
+                             const RasterLayers& layers, GBuffer& out, SharedProgress& progress) {
   std::atomic<std::uint64_t> segments{0};
   tbb::enumerable_thread_specific<Worker> workers;
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
     const AssembleJob job = make_assemble_job(scene, view, numbering, g);
     parallel_for(job.strands->strand_count(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
       Worker& worker = workers.local();
-      std::uint64_t drawn = 0;
+      std::uint64_t points = 0;
       for (std::size_t s = begin; s < end;) {
         s = assemble_strands(job, s, end, worker.block);
         raster_block(worker, layers, out);
-        drawn += worker.block.count;
+        points += worker.block.count;
       }
-      segments.fetch_add(drawn, std::memory_order_relaxed);
-      shared.add(end - begin);
+      segments.fetch_add(points, std::memory_order_relaxed);
+      progress.add(end - begin);
     });
+  }
+  return segments;
+}
+
+}  // namespace
+
+std::uint64_t raster_strands(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
+                             const RasterLayers& layers, GBuffer& out, const Progress& progress) {
+  clear_gbuffer(view, layers, out);
+  const AnalyticCells cells = layers.analytic ? choose_cells(scene, view) : AnalyticCells();
+  const bool in_cells = cells.per_pixel > 1;
+  std::uint64_t strands = 0;
+  for (const GroomInstance& groom : scene.grooms) strands += groom.strands->strand_count();
+  SharedProgress shared(progress, std::max<std::uint64_t>(1, in_cells ? 2 * strands : strands));
+  RasterLayers in_pixels = layers;
+  in_pixels.analytic = layers.analytic && !in_cells;
+  const std::uint64_t segments = stream_strands(scene, view, numbering, in_pixels, out, shared);
+  if (in_cells) {
+    GBuffer fine = make_cells(cells, out);
+    stream_strands(scene, cells.view, numbering, {.center = false, .analytic = true}, fine, shared);
+    average_cells(cells, fine, out);
   }
   finish_gbuffer(layers, out);
   return segments;

@@ -69,7 +69,7 @@ void flush(FragmentBuffer& f, PixelKey* keys) {
 /// Sample positions as the lanes of a bunch need them.
 struct SampleOffsets {
   Float u[kMaxSamples], v[kMaxSamples];  // from the pixel's center, along each lane's axes
-  Float from_line[kMaxSamples];          // raster_sample_offset()
+  Float shift[kMaxSamples], growth[kMaxSamples];
 };
 
 /// One column of each lane: appends the pixels with covered samples.
@@ -85,7 +85,7 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleOffsets& o, Floa
     const Float v = row + Float(0.5f), above_center = v - center;
     Uints mask = hn::Zero(kUint);
     for (int i = 0; i < kSamples; ++i) {
-      const Mask covered = wide::raster_sample_covered(above_center, o.from_line[i], half);
+      const Mask covered = wide::raster_sample_covered(above_center, o.shift[i], half, o.growth[i]);
       mask = hn::Or(mask, hn::IfThenElseZero(hn::RebindMask(kUint, covered.m), hn::Set(kUint, 1u << i)));
     }
     mask = hn::IfThenElseZero(hn::RebindMask(kUint, open.m), mask);
@@ -124,7 +124,8 @@ void samples_of_block(const ScreenBlock& block, int width, int height, FragmentB
     for (std::size_t i = 0; i < kSamples; ++i) {
       const Float x(positions[i].x - 0.5f), y(positions[i].y - 0.5f);
       o.u[i] = select(w.band.x_major, x, y), o.v[i] = select(w.band.x_major, y, x);
-      o.from_line[i] = wide::raster_sample_offset(w.band, o.u[i], o.v[i]);
+      o.shift[i] = wide::raster_sample_shift(w.band, o.u[i], o.v[i]);
+      o.growth[i] = wide::raster_sample_growth(w.band, o.u[i]);
     }
     for (Float column = w.column; wide::any(column <= w.last); column = column + Float(1.0f))
       visit_column<kSamples>(w, o, column, f, keys);

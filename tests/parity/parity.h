@@ -4,6 +4,7 @@ const float kParityRounding = 1.0e-6f;  // GLSL may contract a·b + c and divide
 const float kParityPow = 4.0e-6f;       // e^(y·log x): the error of the logarithm grows with y
 const float kParityScatter = 4.0e-6f;   // some ten roundings and elementary functions in a row
 const float kParityLobe = 5.0e-5f;      // exponents and concentrations of narrow lobes multiply those errors
+const float kParityArea = 1.0e-5f;      // roundings of a band's height, some pixels, against an area below 1
 const float kParityGgx = 1.0e-5f;       // the narrow peak multiplies the error of the half vector
 
 PELAGE_FN Vec4 parity_result(Float x) { return Vec4(x, Float(0.0f), Float(0.0f), Float(0.0f)); }

@@ -85,21 +85,22 @@ PELAGE_FN Mask raster_row_covered(Float row, Float at, Float center, Float half)
   return (row + at) - center <= half;
 }
 
-// Samples of one pixel. They share the depth, the half height and the center line's height of the pixel's own center, c(s)
-// and h(s); a sample off by (o_u, o_v) from there is as far from the center line as
-//   d = ((row + 1/2) - c(s)) + (o_v - m o_u).
-// `offset` is the last bracket, the same for all pixels of a segment.
-PELAGE_FN Float raster_sample_offset(RasterBand r, Float o_u, Float o_v) { return o_v - r.slope * o_u; }
-PELAGE_FN Mask raster_sample_covered(Float above_center, Float offset, Float half) {
-  return abs(above_center + offset) <= half;
+// Samples of one pixel share its depth, and c(s) and h(s) of its center's column; a sample off by (o_u, o_v) from there is
+// covered where
+//   |((row + 1/2) - c(s)) + (o_v - m o_u)| <= h(s) + dh/du o_u.
+// The brackets with o_u are the same for all pixels of a segment: `shift` and `growth`.
+PELAGE_FN Float raster_sample_shift(RasterBand r, Float o_u, Float o_v) { return o_v - r.slope * o_u; }
+PELAGE_FN Float raster_sample_growth(RasterBand r, Float o_u) { return r.half_slope * o_u; }
+PELAGE_FN Mask raster_sample_covered(Float above_center, Float shift, Float half, Float growth) {
+  return abs(above_center + shift) <= half + growth;
 }
-// Rows of a pixel column with center height c whose pixels the band may touch: from here ...
+// Rows of a pixel column whose pixels lie within the lateral edges, if only in part: from here ...
 PELAGE_FN Float raster_lowest_row(RasterBand r, Float center, Float half) {
-  return floor(center - (half + abs(r.slope) * Float(0.5f)));
+  return floor(center - (half + abs(r.slope - r.half_slope) * Float(0.5f)));
 }
 // ... to here.
 PELAGE_FN Float raster_highest_row(RasterBand r, Float center, Float half) {
-  return floor(center + (half + abs(r.slope) * Float(0.5f)));
+  return floor(center + (half + abs(r.slope + r.half_slope) * Float(0.5f)));
 }
 // Rules (2) and (3) of a sample, from the sides of its pixel's center (u, v).
 PELAGE_FN Mask raster_sample_between_caps(RasterBand r, Float side_a, Float side_b, Float u, Float o_u, Float o_v) {
