@@ -5,12 +5,16 @@ namespace pelage::bench {
 
 void add_assemble_cases(Suite& suite);
 void add_raster_cases(Suite& suite);
+void add_light_cases(Suite& suite);
+void add_shade_cases(Suite& suite);
 void add_frame_cases(Suite& suite);
 
 Suite all_cases() {
   Suite suite;
   add_assemble_cases(suite);
   add_raster_cases(suite);
+  add_light_cases(suite);
+  add_shade_cases(suite);
   add_frame_cases(suite);
   return suite;
 }

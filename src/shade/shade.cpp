@@ -63,7 +63,7 @@ void pad(ShadeBatch& batch) {
 
 /// Shades `samples`, at most ShadeBatch::kSize of them, groom by groom.
 void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, std::span<const VisibleSample> samples,
-                 ShadeBatch& batch, Vec3* color) {
+                 Evaluator evaluator, ShadeBatch& batch, Vec3* color) {
   std::array<SegmentRef, ShadeBatch::kSize> segments;
   std::array<std::uint32_t, ShadeBatch::kSize> pending, left, taken;
   std::size_t pending_count = samples.size();
@@ -85,7 +85,7 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
       taken[batch.count++] = i;
     }
     pad(batch);
-    evaluate(constants[groom], batch);
+    evaluator(constants[groom], batch);
     for (std::size_t j = 0; j < batch.count; ++j) color[taken[j]] = {batch.r[j], batch.g[j], batch.b[j]};
     pending = left, pending_count = left_count;
   }
@@ -95,6 +95,11 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
 
 Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
                const LightRig& rig, std::span<const Vec2> sample_positions) {
+  return shade_with(evaluate, scene, view, numbering, gbuffer, rig, sample_positions);
+}
+
+Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
+                    const GBuffer& gbuffer, const LightRig& rig, std::span<const Vec2> sample_positions) {
   const bool sampled = !gbuffer.sample_keys.empty();
   const Buffer<PixelKey>& keys = sampled ? gbuffer.sample_keys : gbuffer.center;
   const int samples = sampled ? gbuffer.samples : 1;
@@ -110,7 +115,7 @@ Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumberin
     constants.push_back(shade_constants(groom.material, scene.settings.dual_scattering, rig));
   parallel_for(list.samples.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
     ShadeBatch batch;
-    shade_block(gather, constants, {list.samples.data() + begin, end - begin}, batch, radiance.color.data() + begin);
+    shade_block(gather, constants, {list.samples.data() + begin, end - begin}, evaluator, batch, radiance.color.data() + begin);
   });
   return radiance;
 }

@@ -9,6 +9,11 @@
 
 namespace pelage {
 
+struct ShadeBatch;
+struct ShadeConstants;
+/// Evaluates a batch: evaluate() or evaluate_scalar() of shade/evaluate.h.
+using Evaluator = void (*)(const ShadeConstants&, ShadeBatch&);
+
 /// Colors of the strands that `gbuffer` shows: of `sample_keys`, or of `center` where there are none.
 ///
 /// Samples of a pixel that see the same segment share one evaluation, made at the first of them. `sample_positions` are
@@ -19,5 +24,9 @@ namespace pelage {
 /// instruction set. Complexity: O(pixels · samples + evaluations · lights).
 Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
                const LightRig& rig, std::span<const Vec2> sample_positions);
+
+/// The same with another evaluator: the scalar reference of tests and benchmarks.
+Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
+                    const GBuffer& gbuffer, const LightRig& rig, std::span<const Vec2> sample_positions);
 
 }  // namespace pelage
