@@ -80,7 +80,7 @@ void append(FragmentBuffer& f, Mask m, Uints pixel, Float depth, Uints id) {
 
 /// One column of each lane: appends the covered rows.
 template <bool kThin>
-HWY_INLINE void visit_column(const SegmentLanes& w, Float column, FragmentBuffer& f) {
+HWY_INLINE void visit_column(const SegmentLanes& w, Float column, FragmentBuffer& f, PixelKey* keys) {
   const wide::RasterBand& band = w.band;
   const Float half_pixel(0.5f);
   const Float u = column + half_pixel, s = u - band.u;
@@ -92,6 +92,7 @@ HWY_INLINE void visit_column(const SegmentLanes& w, Float column, FragmentBuffer
   while (wide::any(open)) {
     const Mask covered = open && wide::raster_between_caps(band, u, row + half_pixel);
     if (wide::any(covered)) {
+      if (f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity) Flush(f, keys);
       append(f, covered, pixels_at(w, column, row), wide::raster_band_depth(band, s), w.id);
     }
     if (kThin) return;
@@ -109,9 +110,8 @@ void Center(const ScreenBlock& block, int width, int height, FragmentBuffer& f, 
     const bool thin = !wide::any(max(w.band.half, at_end) >= Float(0.49f));
     Float column = w.column;
     do {
-      if (f.count + lanes > FragmentBuffer::kCapacity) Flush(f, keys);
-      if (thin) visit_column<true>(w, column, f);
-      else visit_column<false>(w, column, f);
+      if (thin) visit_column<true>(w, column, f, keys);
+      else visit_column<false>(w, column, f, keys);
       column = column + Float(1.0f);
     } while (wide::any(column <= w.last));
   }
