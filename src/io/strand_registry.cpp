@@ -47,7 +47,11 @@ bool begins_with(const ByteSource& source, std::string_view magic) {
 std::string_view headerless_name(const ByteSource& source) {
   if (source.size() < 8) return "";
   const std::uint64_t n = source.get<std::uint32_t>(0, "count"), second = source.get<std::uint32_t>(4, "count");
-  if (n > 0 && source.size() == 8 + 2 * n + 12 * second) return "a MonoHair .hair file";
+  if (n > 0 && source.size() == 8 + 2 * n + 12 * second) {
+    std::uint64_t points = 0;
+    for (std::uint64_t s = 0; s < n; ++s) points += source.get<std::uint16_t>(8 + 2 * s, "count");
+    if (points == second) return "a MonoHair .hair file";
+  }
   constexpr std::uint64_t kPoint = 28;  // position, normal, label
   std::uint64_t at = 4;
   for (std::uint64_t s = 0; s < n && source.size() - at >= 4; ++s) {
