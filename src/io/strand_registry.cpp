@@ -53,13 +53,13 @@ std::string_view headerless_name(const ByteSource& source) {
     if (points == second) return "a MonoHair .hair file";
   }
   constexpr std::uint64_t kPoint = 28;  // position, normal, label
-  std::uint64_t at = 4;
-  for (std::uint64_t s = 0; s < n && source.size() - at >= 4; ++s) {
+  std::uint64_t at = 4, strands = 0;
+  for (; strands < n && source.size() - at >= 4; ++strands) {
     const std::uint64_t m = source.get<std::uint32_t>(at, "count");
     if (m > (source.size() - at - 4) / kPoint) return "";
     at += 4 + kPoint * m;
   }
-  return n > 0 && at == source.size() ? "a CT2Hair .bin file" : "";
+  return n > 0 && strands == n && at == source.size() ? "a CT2Hair .bin file" : "";
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ void Xxh64::stripe(const unsigned char* data) {
 }
 
 void Xxh64::add(const void* data, std::size_t bytes) {
+  if (bytes == 0) return;  // `data` may be null then
   const auto* from = static_cast<const unsigned char*>(data);
   total_ += bytes;
   if (pending_bytes_ > 0) {
@@ -41,7 +42,7 @@ void Xxh64::add(const void* data, std::size_t bytes) {
     pending_bytes_ = 0;
   }
   for (; bytes >= kStripe; from += kStripe, bytes -= kStripe) stripe(from);
-  if (bytes > 0) std::memcpy(pending_, from, bytes);
+  std::memcpy(pending_, from, bytes);
   pending_bytes_ = bytes;
 }
 
