@@ -171,7 +171,8 @@ class GlbReader {
     std::vector<std::uint32_t> indices;
     if (primitive.contains("indices")) {
       const Accessor a = accessor(integer(primitive["indices"]), 1);
-      if (a.type == kFloat) fail("indices", "floating-point indices");
+      if (a.type != kUnsignedByte && a.type != kUnsignedShort && a.type != kUnsignedInt)
+        fail("indices", fmt::format("component type {}; indices are unsigned integers", a.type));
       indices.resize(a.count);
       for (std::size_t i = 0; i < a.count; ++i) indices[i] = static_cast<std::uint32_t>(component(a, i, 0));
     } else {
