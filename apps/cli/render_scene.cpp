@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <pelage/error.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -67,6 +68,15 @@ Light parse_light(const std::string& text) {
   return light;
 }
 
+// Files without widths often hold a tenth of a head of hair; strands of a hair's own width would then show the scalp. Drawn
+// wider by the root of what is missing, they cover more and still look like strands.
+float width_for_full_head(std::size_t strands, std::vector<std::string>& notes) {
+  constexpr float kFullHead = 100000;
+  const float scale = std::clamp(std::sqrt(kFullHead / static_cast<float>(std::max<std::size_t>(1, strands))), 1.f, 2.5f);
+  if (scale > 1) notes.push_back(fmt::format("no widths, and few strands: drawn {:.1f} times as wide as hair; --width-scale changes it", scale));
+  return scale;
+}
+
 void read_groom_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes, Scene& scene) {
   ImportOptions import;
   if (options.scale) import.scale = *options.scale;
@@ -76,6 +86,7 @@ void read_groom_scene(const RenderOptions& options, const Progress& progress, st
   groom.strands = std::make_shared<StrandSet>(read_strands(options.input, import, &report, progress));
   if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
   notes = report.notes;
+  if (report.width_guessed) groom.width_scale = width_for_full_head(groom.strands->strand_count(), notes);
   if (!report.repairs.clean()) notes.push_back(report.repairs.summary());
   // Meshes that belong to a groom come in its units and axes.
   for (const std::string& path : options.meshes)

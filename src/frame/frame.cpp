@@ -63,7 +63,7 @@ struct Band {
 
 // Sample layers of a large picture would not fit into memory: bands of about this many samples do. The bands follow from
 // the settings alone, never from the machine, because a band's pixels may differ in the last bit from a whole picture's.
-constexpr std::size_t kSamplesPerBand = std::size_t{1} << 24;
+constexpr std::size_t kSamplesPerBand = std::size_t{1} << 23;
 
 std::vector<Band> bands_of(const RenderSettings& s) {
   const std::size_t per_row = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.samples);
@@ -136,7 +136,9 @@ void render_band(const Frame& frame, const Band& band, Stages& stages, Image& li
                      bytes_of(radiance.index, edges.index) + bytes_of(radiance.color, edges.color)};
   });
 
+  gbuffer.sample_keys.release();  // every strand that they show has its color
   stages.run("composite", "pixels", [&](const Progress&) {
+    if (linear.pixels.empty()) linear = Image(settings.width, settings.height, {"R", "G", "B", "A"});
     resolve({gbuffer, radiance, edges, opaque, make_backdrop(frame.scene, view)}, settings, band.first_row, linear);
     return StageWork{pixels, linear.pixels.size() * sizeof(float)};
   });
@@ -144,7 +146,7 @@ void render_band(const Frame& frame, const Band& band, Stages& stages, Image& li
 
 Image render_beauty(const Frame& frame, Stages& stages) {
   const RenderSettings& settings = frame.scene.settings;
-  Image linear(settings.width, settings.height, {"R", "G", "B", "A"});
+  Image linear;  // made by the first band that is ready for it
   const std::vector<Band> bands = bands_of(settings);
   for (std::size_t i = 0; i < bands.size(); ++i) {
     stages.set_band(static_cast<int>(i), static_cast<int>(bands.size()));
