@@ -143,6 +143,16 @@ TEST(Frame, AlphaIsTheShareOfCoveredSamples) {
   EXPECT_NEAR(mean(render(scene).linear, 3), 0.103, 0.002);
 }
 
+// A tenth of a pixel is a tenth by area; the strand's edge lends the color where no sample meets it.
+TEST(Frame, AnalyticAlphaIsTheArea) {
+  Scene scene = band_scene(50, 0.103f);
+  scene.settings.alpha = AlphaSource::kAnalytic;
+  EXPECT_NEAR(mean(render(scene).linear, 3), 0.103, 0.002);
+  scene.grooms[0].strands = band_scene(50, 0.002f).grooms[0].strands;
+  scene.settings.samples = 1;
+  EXPECT_NEAR(mean(render(scene).linear, 3), 0.002, 0.0001);
+}
+
 TEST(Frame, BandsOfALargePictureMeetWithoutASeam) {
   Scene scene = band_scene(1100, 0.01f);  // 1100² pixels of 16 samples are more than one band
   scene.settings.samples = 16;
@@ -163,6 +173,7 @@ TEST(DebugViews, SayWhatIsThere) {
   EXPECT_NEAR(middle(View::kU).x, 0.5f, 0.02f);
   EXPECT_NEAR(middle(View::kDepth).x, 1, 1e-5f) << "the camera stands a meter away";
   EXPECT_NEAR(middle(View::kTangent).y, 1, 1e-5f);
+  EXPECT_NEAR(middle(View::kCoverage).x, 1, 1e-3f);
   EXPECT_EQ(middle(View::kOverdraw).x, 1);
   scene.grooms[0].material.color_source = HairMaterial::ColorSource::kRgb;
   EXPECT_NEAR(middle(View::kAlbedo).x, scene.grooms[0].material.color.x, 1e-6f);

@@ -12,8 +12,8 @@ PELAGE_FN Float raster_area_below(Float y0, Float y1) {
   Float above = max(hi - max(lo, one), zero);
   Float rise = hi - lo;
   Float whole = above + (inside_hi - inside_lo) * (inside_hi + inside_lo) * Float(0.5f);
-  Mask flat = rise < Float(1.0e-6f);
-  return select(flat, inside_lo, whole / select(flat, one, rise));
+  Mask level = rise < Float(1.0e-6f);
+  return select(level, inside_lo, whole / select(level, one, rise));
 }
 
 // Area of the band inside the pixel at (column center u, row center v) where neither caps nor ends cut it; `center` and
