@@ -17,8 +17,13 @@ add_library(pelage_options INTERFACE)
 target_compile_options(pelage_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi
   -ffp-contract=off -fno-math-errno)
-# SSSE3 adds nothing between EMU128 and SSE4 that anyone owns.
-target_compile_definitions(pelage_options INTERFACE "HWY_DISABLED_TARGETS=(1LL<<12)" PELAGE_VERSION="${PROJECT_VERSION}")
+# SSSE3 (bit 12) adds nothing between EMU128 and SSE4 that anyone owns. Races do not depend on the instruction set, and
+# instrumented wide code is slow to compile, so the thread sanitizer goes without AVX3 (7, 8) and AVX2 (9).
+set(disabled "(1LL<<12)")
+if(PELAGE_SANITIZE MATCHES thread)
+  set(disabled "((1LL<<12)|(1LL<<9)|(1LL<<8)|(1LL<<7))")
+endif()
+target_compile_definitions(pelage_options INTERFACE "HWY_DISABLED_TARGETS=${disabled}" PELAGE_VERSION="${PROJECT_VERSION}")
 if(PELAGE_SCALAR)
   target_compile_definitions(pelage_options INTERFACE HWY_COMPILE_ONLY_SCALAR)
 endif()

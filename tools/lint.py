@@ -231,7 +231,22 @@ def check_citations(tree):
             yield "references.bib", number, f"nothing cites {key}"
 
 
-ALLOWED_BINARIES = (".png", ".jpg")
+def check_links(tree):
+    """Pages that the text sends its reader to exist."""
+    known = set(tree.files) | {os.path.dirname(f) for f in tree.files}
+    for file in tree.text():
+        if os.path.basename(file) in ("lint.py", "lint_test.py"):
+            continue
+        for number, line in enumerate(tree.lines(file), 1):
+            for target in re.findall(r"(?<![\w/.])((?:docs|tools|tests|src|cmake)/[\w/-]+\.(?:md|sh|py|json|h|cpp|inc))\b", line):
+                if target not in known:
+                    yield file, number, f"{target} does not exist"
+            if file.endswith(".md"):
+                for target in re.findall(r"\]\(([^)#:\s]+)\)", line):
+                    if os.path.normpath(os.path.join(os.path.dirname(file), target)) not in known:
+                        yield file, number, f"{target} does not exist"
+
+
 BINARY_FOLDERS = ("docs/images/", "tests/golden/", "tests/regress/", "tests/fuzz/")
 
 

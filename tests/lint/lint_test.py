@@ -57,6 +57,8 @@ BROKEN = [
     ("whitespace", "src/raster/dda.cpp", "\tint a;", "tab"),
     ("citations", "src/raster/dda.cpp", "// references.bib: Nobody1999Nothing", "not in references.bib"),
     ("citations", "references.bib", "@book{Some2000Book,\n}", "nothing cites Some2000Book"),
+    ("links", "src/raster/dda.cpp", "// Derivation: docs/derivations/dda.md", "docs/derivations/dda.md does not exist"),
+    ("links", "README.md", "[how](docs/how.md)", "docs/how.md does not exist"),
     ("binaries", "src/raster/shader.spv", "\0", "a binary file outside"),
 ]
 
