@@ -1,9 +1,10 @@
 #!/bin/bash
-# Makes docs/images/hair.png, the picture of the README: three heads of grown hair, side by side.
+# Makes docs/images/hair.png, the picture of the README: three heads of grown hair, side by side (the Debian package
+# openimageio-tools puts them there).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 pelage=${PELAGE:-build/release/bin/pelage}
-mkdir -p out/readme
+mkdir -p out/readme docs/images
 for hair in curly:brown straight:blond wavy:red; do
   style=${hair%:*}
   "$pelage" grow "$style" -o "out/readme/$style.pelage" --write-mesh out/readme/head.obj
