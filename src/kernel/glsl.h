@@ -11,6 +11,7 @@
 #define Vec3 vec3
 #define Vec4 vec4
 // Names that only GLSL reserves.
+#define flat flat_
 #define half half_
 #define sample sample_
 
