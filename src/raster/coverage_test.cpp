@@ -123,12 +123,12 @@ ScreenBlock random_segment(std::uint32_t key) {
   return b;
 }
 
-/// The band clipped to a pixel, in double precision: corners of the polygon that half planes leave. Empty: not touched.
-/// The half planes are moved out by `slack` pixels.
-bool touches(const ScreenBlock& b, int x, int y, double slack) {
-  struct P {
-    double x, y;
-  };
+/// The band clipped to a pixel, in double precision: corners of the polygon that half planes leave, moved out by `slack`
+/// pixels.
+struct P {
+  double x, y;
+};
+std::vector<P> clipped(const ScreenBlock& b, int x, int y, double slack) {
   std::vector<P> corners{{x + 0.0, y + 0.0}, {x + 1.0, y + 0.0}, {x + 1.0, y + 1.0}, {x + 0.0, y + 1.0}};
   const auto keep = [&](auto&& side) {
     std::vector<P> kept;
@@ -156,7 +156,33 @@ bool touches(const ScreenBlock& b, int x, int y, double slack) {
   const double limit = kernel::kRasterMiterLimit;
   keep([&](P p) { return s(p) - std::min(-ra * limit, du - rb * limit) + slack; });
   keep([&](P p) { return std::max(ra * limit, du + rb * limit) - s(p) + slack; });
-  return corners.size() >= 3;
+  return corners;
+}
+
+bool touches(const ScreenBlock& b, int x, int y, double slack) { return clipped(b, x, y, slack).size() >= 3; }
+
+TEST(Coverage, AreasAreThoseOfThePolygon) {
+  constexpr int kSize = 8;
+  constexpr double kAreaError = 5e-5;  // single-precision coordinates of some tens of pixels, slopes below 2
+  int whole = 0;
+  for (std::uint32_t key = 0; key < 100000; ++key) {
+    const ScreenBlock b = random_segment(key);
+    double found[kSize][kSize] = {};
+    walk_areas(band_at(b, 0), kSize, kSize, [&](int x, int y, float, float area, const PixelSides& p) {
+      found[y][x] = area, whole += p.whole;
+    });
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const std::vector<P> c = clipped(b, x, y, 0);
+        double twice = 0;
+        for (std::size_t i = 0; i < c.size(); ++i) {
+          const P p = c[i], q = c[(i + 1) % c.size()];
+          twice += (p.x - x) * (q.y - y) - (p.y - y) * (q.x - x);
+        }
+        ASSERT_NEAR(found[y][x], std::fabs(twice) / 2, kAreaError) << "segment " << key << ", pixel " << x << " " << y;
+      }
+  }
+  EXPECT_GT(whole, 10000);
 }
 
 TEST(Coverage, ConservativeWalkVisitsExactlyWhatIsTouched) {
