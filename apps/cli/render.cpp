@@ -114,7 +114,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
 }
 
 void add_scene_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb); may be repeated")->type_name("FILE")->allow_extra_args(false);
+  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")->type_name("FILE")->allow_extra_args(false);
   verb.add_option("--scale", o.scale, "Meters per unit of the files; guessed without it")->check(CLI::PositiveNumber);
   verb.add_option("--up", o.up, "Axis of the files that points up: y, z, auto")->type_name("AXIS");
   verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");

@@ -17,7 +17,7 @@ enum class UpAxis { kAuto, kY, kZ };
 struct ImportOptions {
   float scale = 0;               ///< metres per file unit; 0 guesses (see ImportReport)
   UpAxis up = UpAxis::kAuto;     ///< which file axis points up
-  float default_width = 8e-5f;   ///< metres, for files without widths (human hair is 50–100 µm)
+  float default_width = 0;       ///< metres, for files without widths; 0 guesses: 80 µm, more for sparse grooms (0.8 mm at most)
 };
 
 /// What the reader assumed, and what it repaired: printed by `pelage info`.
@@ -48,7 +48,7 @@ struct FormatInfo {
 /// The registered groom formats.
 std::vector<FormatInfo> strand_formats();
 
-/// OBJ, PLY, binary glTF. `scale` metres per file unit. Throws Error.
+/// OBJ, PLY, binary glTF, TressFX .tfxmesh. `scale` metres per file unit. Throws Error.
 TriangleMesh read_mesh(const std::string& path, float scale = 1, UpAxis up = UpAxis::kY);
 void write_mesh(const std::string& path, const TriangleMesh& mesh);
 

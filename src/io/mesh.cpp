@@ -74,16 +74,20 @@ void complete_normals(TriangleMesh& mesh) {
 }
 
 std::string detect_mesh_format(const ByteSource& source) {
-  std::array<char, 4> head = {};
-  source.read(0, std::min<std::uint64_t>(head.size(), source.size()), head.data(), "magic");
-  if (head == std::array{'g', 'l', 'T', 'F'}) return "glb";
-  return head[0] == 'p' && head[1] == 'l' && head[2] == 'y' && (head[3] == '\n' || head[3] == '\r') ? "ply" : "obj";
+  std::string head(std::min<std::uint64_t>(256, source.size()), '\0');
+  source.read(0, head.size(), head.data(), "magic");
+  if (head.starts_with("glTF")) return "glb";
+  if (head.starts_with("ply\n") || head.starts_with("ply\r")) return "ply";
+  return looks_like_tfxmesh(head) ? "tfxmesh" : "obj";
 }
 
 TriangleMesh read_mesh(const ByteSource& source) {
   if (source.size() == 0) throw Error(source.name(), "", "an empty file", "export the mesh again");
   const std::string format = detect_mesh_format(source);
-  TriangleMesh mesh = format == "glb" ? read_glb(source) : format == "ply" ? read_ply(source) : read_obj(source);
+  TriangleMesh mesh = format == "glb"       ? read_glb(source)
+                      : format == "ply"     ? read_ply(source)
+                      : format == "tfxmesh" ? read_tfxmesh(source)
+                                            : read_obj(source);
   check_mesh(mesh, source.name());
   complete_normals(mesh);
   for (Vec2& uv : mesh.uv)

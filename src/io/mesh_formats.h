@@ -4,6 +4,7 @@
 #include <pelage/triangle_mesh.h>
 
 #include <string>
+#include <string_view>
 
 #include "io/atomic_file.h"
 #include "io/byte_source.h"
@@ -13,6 +14,7 @@ namespace pelage::io {
 TriangleMesh read_obj(const ByteSource& source);
 TriangleMesh read_ply(const ByteSource& source);
 TriangleMesh read_glb(const ByteSource& source);
+TriangleMesh read_tfxmesh(const ByteSource& source);
 
 void write_obj(AtomicFile& file, const TriangleMesh& mesh);
 void write_ply(AtomicFile& file, const TriangleMesh& mesh);
@@ -20,7 +22,10 @@ void write_ply(AtomicFile& file, const TriangleMesh& mesh);
 /// What read_mesh() does with bytes that are already in memory (tests, fuzzing): detects, reads, checks, completes normals.
 TriangleMesh read_mesh(const ByteSource& source);
 
-/// "obj", "ply" or "glb" by content; text without a magic number counts as OBJ.
+/// Whether the text that begins with `head` is a TressFX collision mesh.
+bool looks_like_tfxmesh(std::string_view head);
+
+/// "obj", "ply", "glb" or "tfxmesh" by content; other text without a magic number counts as OBJ.
 std::string detect_mesh_format(const ByteSource& source);
 
 /// Unit normals for the vertices that have none: the mean of the faces' normals around the position, weighted by the angle

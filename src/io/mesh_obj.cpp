@@ -4,35 +4,17 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <unordered_map>
 
 #include "io/mesh_formats.h"
+#include "io/text_words.h"
 
 namespace pelage::io {
 namespace {
 
 constexpr std::uint32_t kNone = UINT32_MAX;
-
-// One line at a time, words split at blanks.
-class Line {
- public:
-  explicit Line(std::string_view text) : rest_(text) {}
-  std::string_view word() {
-    const std::size_t begin = rest_.find_first_not_of(" \t");
-    if (begin == std::string_view::npos) return rest_ = {};
-    const std::size_t end = std::min(rest_.find_first_of(" \t", begin), rest_.size());
-    const std::string_view found = rest_.substr(begin, end - begin);
-    rest_.remove_prefix(end);
-    return found;
-  }
-
- private:
-  std::string_view rest_;
-};
 
 // A corner of a face: indices of position, texture coordinate and normal; one vertex per combination.
 struct Corner {
@@ -55,30 +37,26 @@ class ObjReader {
   TriangleMesh read() {
     std::string_view rest(text_.data(), text_.size());
     if (rest.find('\0') != std::string_view::npos)
-      throw Error(name_, "", "binary data, not an OBJ text", "OBJ, PLY and glb are read");
+      throw Error(name_, "", "binary data, not an OBJ text", "OBJ, PLY, glb and tfxmesh are read");
     while (!rest.empty()) {
       ++line_number_;
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
-      std::string_view line = rest.substr(0, end);
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      read_line(Line(line));
+      read_line(Words(take_line(rest)));
     }
     if (mesh_.triangles.empty())
-      throw Error(name_, "", "no faces", positions_.empty() ? "is it a mesh? OBJ, PLY and glb are read" : "");
+      throw Error(name_, "", "no faces", positions_.empty() ? "is it a mesh? OBJ, PLY, glb and tfxmesh are read" : "");
     if (!all_have_uv_) mesh_.uv.clear();
     return std::move(mesh_);
   }
 
  private:
-  void read_line(Line line) {
-    const std::string_view key = line.word();
+  void read_line(Words line) {
+    const std::string_view key = line.next();
     if (key == "v") {
       const Vec3 p = vec3(line);
       positions_.push_back(p);
     } else if (key == "vt") {
-      const float u = number(line.word());
-      const std::string_view v = line.word();
+      const float u = number(line.next());
+      const std::string_view v = line.next();
       uvs_.emplace_back(u, v.empty() ? 0 : number(v));
     } else if (key == "vn") {
       normals_.push_back(normalize(vec3(line)));
@@ -87,28 +65,23 @@ class ObjReader {
     }
   }
 
-  Vec3 vec3(Line& line) const {
-    const float x = number(line.word()), y = number(line.word());
-    return {x, y, number(line.word())};
+  Vec3 vec3(Words& line) const {
+    const float x = number(line.next()), y = number(line.next());
+    return {x, y, number(line.next())};
   }
 
   float number(std::string_view word) const {
-    float value = 0;
-    if (word.starts_with('+')) word.remove_prefix(1);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc::result_out_of_range) return 0;  // below the smallest float; too large ones fail below
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      fail(fmt::format("'{}' is no number", word));
-    return value;
+    const std::optional<float> value = float_from(word);
+    if (!value) fail(fmt::format("'{}' is no number", word));
+    return *value;
   }
 
   // OBJ counts from 1, and from the last one backwards with negative numbers. "" is no index.
   std::uint32_t index(std::string_view word, std::size_t count, const char* what) const {
     if (word.empty()) return kNone;
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) fail(fmt::format("'{}' is no index", word));
-    const std::int64_t from_zero = value > 0 ? value - 1 : static_cast<std::int64_t>(count) + value;
+    const std::optional<std::int64_t> told = integer_from<std::int64_t>(word);
+    if (!told) fail(fmt::format("'{}' is no index", word));
+    const std::int64_t value = *told, from_zero = value > 0 ? value - 1 : static_cast<std::int64_t>(count) + value;
     if (value == 0 || from_zero < 0 || from_zero >= static_cast<std::int64_t>(count))
       fail(fmt::format("{} {} of {}", what, value, count));
     return static_cast<std::uint32_t>(from_zero);
@@ -129,10 +102,10 @@ class ObjReader {
     return c;
   }
 
-  void face(Line& line) {
+  void face(Words& line) {
     std::uint32_t first = kNone, previous = kNone;
     int corners = 0;
-    for (std::string_view word = line.word(); !word.empty(); word = line.word(), ++corners) {
+    for (std::string_view word = line.next(); !word.empty(); word = line.next(), ++corners) {
       const std::uint32_t vertex = vertex_of(corner(word));
       if (corners == 0) first = vertex;
       if (corners >= 2) mesh_.triangles.push_back({first, previous, vertex});

@@ -23,8 +23,8 @@ struct Unit {
 };
 constexpr Unit kUnits[] = {{5, 1, "meters"}, {500, 0.01f, "centimeters"}, {INFINITY, 0.001f, "millimeters"}};
 
-// Diagonal of the box that holds the middle 98 % of the coordinates on each axis: stray points do not count.
-float typical_size(const StrandSet& set) {
+// Sides of the box that holds the middle 98 % of the coordinates on each axis: stray points do not count.
+Vec3 typical_extent(const StrandSet& set) {
   const std::size_t step = std::max<std::size_t>(1, set.point_count() / kSamples);
   std::vector<float> axis[3];
   for (std::size_t i = 0; i < set.point_count(); i += step) {
@@ -32,18 +32,19 @@ float typical_size(const StrandSet& set) {
     if (!is_finite(p)) continue;
     axis[0].push_back(p.x), axis[1].push_back(p.y), axis[2].push_back(p.z);
   }
-  if (axis[0].empty()) return 0;
-  double square = 0;
-  for (std::vector<float>& values : axis) {
+  if (axis[0].empty()) return {};
+  float side[3];
+  for (int a = 0; a < 3; ++a) {
+    std::vector<float>& values = axis[a];
     const std::size_t tail = values.size() / 100;
     const auto low = values.begin() + static_cast<std::ptrdiff_t>(tail);
     const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(tail);
     std::nth_element(values.begin(), low, values.end());
-    const double lowest = *low;
+    const float lowest = *low;
     std::nth_element(values.begin(), high, values.end());
-    square += (*high - lowest) * (*high - lowest);
+    side[a] = *high - lowest;
   }
-  return static_cast<float>(std::sqrt(square));
+  return {side[0], side[1], side[2]};
 }
 
 // Mean direction from root to tip, each strand weighing the same; its length is the agreement, 0…1.
@@ -82,7 +83,7 @@ void choose_scale(const FileStrands& file, const ImportOptions& options, ImportR
     report.scale = options.scale > 0 ? options.scale : file.scale;
     return;
   }
-  const float size = typical_size(file.strands);
+  const float size = length(typical_extent(file.strands));
   const Unit* unit = std::find_if(std::begin(kUnits), std::end(kUnits), [&](const Unit& u) { return size < u.below; });
   if (unit == std::end(kUnits)) --unit;
   report.scale = unit->scale;
@@ -110,15 +111,43 @@ float median_width(const std::vector<float>& widths) {
   return *middle;
 }
 
+// Length of all strands together, file units; of a sample of them where there are many.
+double total_length(const StrandSet& set) {
+  const std::size_t step = std::max<std::size_t>(1, set.strand_count() / kSamples);
+  double sum = 0;
+  std::size_t used = 0;
+  for (std::size_t s = 0; s < set.strand_count(); s += step, ++used)
+    for (std::uint32_t i = set.offsets[s]; i + 1 < set.offsets[s + 1]; ++i) {
+      const float piece = length(set.points[i + 1] - set.points[i]);
+      if (std::isfinite(piece)) sum += piece;
+    }
+  return used ? sum * static_cast<double>(set.strand_count()) / static_cast<double>(used) : 0;
+}
+
+// A width for strands that come without. A full head of hair has a hundred thousand, an exchanged groom often a tenth, each
+// standing for several: they get as thick as it takes to cover the faces of the groom's box once, within bounds.
+constexpr float kHumanHair = 8e-5f, kThickestGuess = 10 * kHumanHair;
+
+float guess_width(const StrandSet& set, float scale) {
+  const Vec3 e = typical_extent(set) * scale;
+  const double faces = 2.0 * (double{e.x} * e.y + double{e.y} * e.z + double{e.z} * e.x);
+  const double covering = faces / std::max(total_length(set) * scale, 1e-9);
+  return static_cast<float>(std::clamp(covering, double{kHumanHair}, double{kThickestGuess}));
+}
+
 void choose_widths(FileStrands& file, const ImportOptions& options, ImportReport& report) {
   std::vector<float>& widths = file.strands.widths;
   const float median = median_width(widths) * report.scale;
   const bool absurd = !(median >= kThinnest && median <= kThickest);
   if (widths.empty() || (file.width_is_fallback && absurd)) {
+    const float width = options.default_width > 0 ? options.default_width : guess_width(file.strands, report.scale);
     if (!widths.empty() && widths[0] != 0)
       report.notes.push_back(fmt::format("the default thickness of the file, {} units, is no width of a hair; "
-                                         "{:.3g} mm is used", widths[0], options.default_width * 1e3f));
-    widths.assign(1, options.default_width);
+                                         "{:.3g} mm is used", widths[0], width * 1e3f));
+    else if (width > kHumanHair && !(options.default_width > 0))
+      report.notes.push_back(fmt::format("no widths in the file: {:.3g} mm assumed, so that strands this few cover; "
+                                         "--width overrides it", width * 1e3f));
+    widths.assign(1, width);
     report.width_guessed = true;
     return;
   }
