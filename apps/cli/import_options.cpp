@@ -14,9 +14,8 @@ void add_import_options(CLI::App& verb, ImportOptions& options) {
   verb.add_option("--up", options.up, "Axis of the file that points up: y, z or auto")
       ->transform(CLI::CheckedTransformer(axes, CLI::ignore_case))
       ->type_name("AXIS");
-  verb.add_option("--width", options.default_width, "Meters, diameter of strands whose file has no widths")
+  verb.add_option("--width", options.default_width, "Meters, diameter of strands whose file has no widths; guessed if not given")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str()
       ->type_name("M");
 }
 

@@ -145,8 +145,8 @@ void choose_widths(FileStrands& file, const ImportOptions& options, ImportReport
       report.notes.push_back(fmt::format("the default thickness of the file, {} units, is no width of a hair; "
                                          "{:.3g} mm is used", widths[0], width * 1e3f));
     else if (width > kHumanHair && !(options.default_width > 0))
-      report.notes.push_back(fmt::format("no widths in the file: {:.3g} mm assumed, so that strands this few cover; "
-                                         "--width overrides it", width * 1e3f));
+      report.notes.push_back(fmt::format("no widths in the file: {:.3g} mm assumed, so that strands this few cover "
+                                         "(hair is 0.05 to 0.1 mm)", width * 1e3f));
     widths.assign(1, width);
     report.width_guessed = true;
     return;
