@@ -1,4 +1,5 @@
-// light: control-point segments per second from the strands in memory to the finished opacity map of the key light.
+// light: control-point segments per second from the strands in memory to the finished opacity map of the key light, and
+// the seconds that all maps of the default lights take.
 #include "light/light.h"
 
 #include <fmt/format.h>
@@ -115,6 +116,10 @@ void add_light_cases(Suite& suite) {
       return Workload{.check = [in] { return check(*in); }, .run = [in] { in->build(); }, .items = in->segments()};
     }});
     suite.ratios.push_back({"light.opacity_scaling." + groom, {name, 2}, {name, 1}});
+    suite.cases.push_back({"light.all." + groom, "seconds_per_frame", "s", [groom] {
+      auto in = std::make_shared<Input>(groom);
+      return Workload{.check = [in] { return check(*in); }, .run = [in] { prepare_lights(in->scene, MeshTracer({})); }};
+    }});
   }
 }
 

@@ -17,6 +17,8 @@ constexpr int kEnvironmentLevels = 4;
 constexpr int kEnvironmentMapSize = 192;
 /// … and drawn from about this many strands.
 constexpr std::size_t kEnvironmentStrands = 4000;
+/// Maps of single lights are drawn from about this many strands at least: the others of a larger groom tell them little.
+constexpr std::size_t kLightStrands = 50000;
 
 bool emits(const Light& light) { return light.intensity.x > 0 || light.intensity.y > 0 || light.intensity.z > 0; }
 
@@ -36,21 +38,31 @@ struct MapJob {
   std::size_t strand_stride;
 };
 
-void prepare(PreparedLight prepared, const MapJob& job, LightRig& rig) {
-  prepared.light.direction = normalize(prepared.light.direction);
-  if (!job.scene.settings.shadows || !prepared.light.casts_shadow || job.subject.empty()) {
-    rig.lights.push_back(std::move(prepared));
-    return;
+std::size_t stride_for(const Scene& scene, std::size_t strands) {
+  return std::max<std::size_t>(1, strand_total(scene) / strands);
+}
+
+/// Appends `group` to the rig, with its maps; all opacity maps of a group are drawn together.
+void prepare(std::vector<PreparedLight> group, const MapJob& job, LightRig& rig) {
+  std::vector<CameraView> views;
+  std::vector<std::size_t> owners;
+  for (PreparedLight& prepared : group) {
+    prepared.light.direction = normalize(prepared.light.direction);
+    if (!job.scene.settings.shadows || !prepared.light.casts_shadow || job.subject.empty()) {
+      rig.lights.push_back(std::move(prepared));
+      continue;
+    }
+    const std::vector<CameraView> faces = light_views(prepared.light, job.subject, job.size);
+    for (const CameraView& view : faces) {
+      owners.push_back(rig.lights.size()), views.push_back(view);
+      PreparedLight& face = rig.lights.emplace_back();
+      face.light = prepared.light, face.spread = prepared.spread;
+      face.only_in_view = faces.size() > 1;
+      face.shadow = build_shadow_map(job.meshes, view);
+    }
   }
-  const std::vector<CameraView> views = light_views(prepared.light, job.subject, job.size);
-  for (const CameraView& view : views) {
-    PreparedLight face;
-    face.light = prepared.light, face.spread = prepared.spread;
-    face.only_in_view = views.size() > 1;
-    face.opacity = build_opacity_map(job.lines, view, {job.strand_stride});
-    face.shadow = build_shadow_map(job.meshes, view);
-    rig.lights.push_back(std::move(face));
-  }
+  std::vector<OpacityMap> maps = build_opacity_maps(job.lines, views, {job.strand_stride});
+  for (std::size_t i = 0; i < maps.size(); ++i) rig.lights[owners[i]].opacity = std::move(maps[i]);
 }
 
 }  // namespace
@@ -59,25 +71,27 @@ LightRig prepare_lights(const Scene& scene, const MeshTracer& meshes) {
   LightRig rig;
   const std::vector<StrandLines> lines = strand_lines(scene.grooms);
   const Bounds hair = bounds(lines);
-  MapJob job{scene, meshes, lines, hair.empty() ? meshes.bounds() : hair, scene.settings.opacity_map_size, 1};
+  MapJob job{scene, meshes, lines, hair.empty() ? meshes.bounds() : hair, scene.settings.opacity_map_size,
+             stride_for(scene, kLightStrands)};
+  std::vector<PreparedLight> group;
   for (const Light& light : scene.lights) {
     if (!emits(light)) continue;
-    PreparedLight prepared;
-    prepared.light = light;
-    prepare(std::move(prepared), job, rig);
+    group.emplace_back().light = light;
   }
+  prepare(std::move(group), job, rig);
 
   job.size = std::min(kEnvironmentMapSize, scene.settings.opacity_map_size);
-  job.strand_stride = std::max<std::size_t>(1, strand_total(scene) / kEnvironmentStrands);
+  job.strand_stride = stride_for(scene, kEnvironmentStrands);
+  group.clear();
   for (const EnvironmentPiece& piece : cut_environment(scene.environment, kEnvironmentLevels)) {
-    PreparedLight prepared;
+    PreparedLight& prepared = group.emplace_back();
     prepared.light.type = Light::Type::kDirectional;
     prepared.light.name = "environment";
     prepared.light.direction = -piece.from;
     prepared.light.intensity = piece.irradiance;
     prepared.spread = piece.spread;
-    prepare(std::move(prepared), job, rig);
   }
+  prepare(std::move(group), job, rig);
   rig.irradiance = irradiance_harmonics(scene.environment);
   return rig;
 }

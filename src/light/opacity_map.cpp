@@ -18,18 +18,23 @@ constexpr float kTexelsPerSegment = 8;
 /// Crossings beyond this (262,144 strands) saturate: signed conversion is what every instruction set has.
 constexpr std::uint32_t kMaxUnits = 0x7fffffff;
 
-int segments_per_span(const StrandLines& lines, const CameraView& view) {
-  const float z = std::max(view.near_plane, to_camera(view, lines.bounds().center()).z);
-  const float texels = lines.mean_span() / std::max(texel_size(view, z), 1e-9f);
+/// As many as the view needs that sees the strands largest.
+int segments_per_span(const StrandLines& lines, std::span<const CameraView> views) {
+  float texels = 0;
+  for (const CameraView& view : views) {
+    const float z = std::max(view.near_plane, to_camera(view, lines.bounds().center()).z);
+    texels = std::max(texels, lines.mean_span() / std::max(texel_size(view, z), 1e-9f));
+  }
   return std::clamp(static_cast<int>(std::ceil(std::min(texels, 1e6f) / kTexelsPerSegment)), 1, StrandLines::kMaxSegments);
 }
 
-/// Calls body(block) for every stride-th strand of all grooms, a few thousand points at a time, in parallel.
+/// Calls body(block) for one strand of each `stride` of all grooms, a few thousand points at a time, in parallel.
 template <class Body>
-void for_each_block(const std::vector<StrandLines>& grooms, const CameraView& view, std::size_t stride, const Body& body) {
+void for_each_block(const std::vector<StrandLines>& grooms, std::span<const CameraView> views, std::size_t stride,
+                    const Body& body) {
   for (const StrandLines& lines : grooms) {
     if (lines.bounds().empty()) continue;
-    const int segments = segments_per_span(lines, view);
+    const int segments = segments_per_span(lines, views);
     const std::size_t drawn = (lines.strand_count() + stride - 1) / stride;
     parallel_for(drawn, kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
       thread_local LineBlock block;
@@ -79,35 +84,61 @@ void accumulate_layers(OpacityMap& map) {
   });
 }
 
+/// A map while it is drawn.
+struct Drawing {
+  OpacityMap map;
+  Buffer<std::uint32_t> depth_bits;
+  SplatTarget target;
+};
+
+Drawing begin_drawing(const CameraView& view, const Bounds& box, std::size_t strand_stride) {
+  Drawing d;
+  d.map.view = view;
+  place_layers(box, d.map);
+  const std::size_t columns = origin_columns(view);
+  const std::size_t rows = static_cast<std::size_t>((view.height + OpacityMap::kOriginBlock - 1) / OpacityMap::kOriginBlock);
+  d.depth_bits.resize(columns * rows);
+  d.map.crossings.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * OpacityMap::kLayers);
+  fill_parallel(d.depth_bits.data(), d.depth_bits.size(), std::bit_cast<std::uint32_t>(INFINITY));
+  fill_parallel(d.map.crossings.data(), d.map.crossings.size(), 0);
+  d.target.view = view, d.target.layer_end = d.map.layer_end;
+  d.target.origin_columns = static_cast<std::int32_t>(columns);
+  d.target.first_depth = d.depth_bits.data(), d.target.crossings = d.map.crossings.data();
+  d.target.units = static_cast<float>(strand_stride) / OpacityMap::kCrossingUnit;
+  return d;
+}
+
+OpacityMap end_drawing(Drawing d) {
+  accumulate_layers(d.map);
+  d.map.first_depth.resize(d.depth_bits.size());
+  for (std::size_t i = 0; i < d.depth_bits.size(); ++i) d.map.first_depth[i] = std::bit_cast<float>(d.depth_bits[i]);
+  return std::move(d.map);
+}
+
 }  // namespace
+
+std::vector<OpacityMap> build_opacity_maps(const std::vector<StrandLines>& grooms, std::span<const CameraView> views,
+                                           const OpacitySettings& settings) {
+  PELAGE_CHECK(settings.strand_stride >= 1);
+  const Bounds box = bounds(grooms);
+  if (box.empty()) return std::vector<OpacityMap>(views.size());
+  std::vector<Drawing> drawings;
+  for (const CameraView& view : views) drawings.push_back(begin_drawing(view, box, settings.strand_stride));
+  // Strands become lines once for all views; the lines stay in the cache.
+  for_each_block(grooms, views, settings.strand_stride, [&](const LineBlock& block) {
+    for (const Drawing& d : drawings) splat_depths(block, d.target);
+  });
+  for_each_block(grooms, views, settings.strand_stride, [&](const LineBlock& block) {
+    for (const Drawing& d : drawings) splat_crossings(block, d.target);
+  });
+  std::vector<OpacityMap> maps;
+  for (Drawing& d : drawings) maps.push_back(end_drawing(std::move(d)));
+  return maps;
+}
 
 OpacityMap build_opacity_map(const std::vector<StrandLines>& grooms, const CameraView& view,
                              const OpacitySettings& settings) {
-  PELAGE_CHECK(settings.strand_stride >= 1);
-  OpacityMap map;
-  const Bounds box = bounds(grooms);
-  if (box.empty()) return map;
-  map.view = view;
-  place_layers(box, map);
-  const std::size_t columns = origin_columns(view);
-  const std::size_t rows = static_cast<std::size_t>((view.height + OpacityMap::kOriginBlock - 1) / OpacityMap::kOriginBlock);
-  Buffer<std::uint32_t> depth_bits(columns * rows);
-  map.crossings.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * OpacityMap::kLayers);
-  fill_parallel(depth_bits.data(), depth_bits.size(), std::bit_cast<std::uint32_t>(INFINITY));
-  fill_parallel(map.crossings.data(), map.crossings.size(), 0);
-
-  SplatTarget target;
-  target.view = view, target.layer_end = map.layer_end;
-  target.origin_columns = static_cast<std::int32_t>(columns);
-  target.first_depth = depth_bits.data(), target.crossings = map.crossings.data();
-  target.units = static_cast<float>(settings.strand_stride) / OpacityMap::kCrossingUnit;
-  for_each_block(grooms, view, settings.strand_stride, [&](const LineBlock& block) { splat_depths(block, target); });
-  for_each_block(grooms, view, settings.strand_stride, [&](const LineBlock& block) { splat_crossings(block, target); });
-
-  accumulate_layers(map);
-  map.first_depth.resize(depth_bits.size());
-  for (std::size_t i = 0; i < depth_bits.size(); ++i) map.first_depth[i] = std::bit_cast<float>(depth_bits[i]);
-  return map;
+  return std::move(build_opacity_maps(grooms, {&view, 1}, settings).front());
 }
 
 }  // namespace pelage

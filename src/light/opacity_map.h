@@ -6,6 +6,7 @@
 // crossings by a ray through a random place of the texel. Sums of such expectations are right for any texel size.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "frame/frame.h"
@@ -14,15 +15,19 @@
 namespace pelage {
 
 struct OpacitySettings {
-  /// Every n-th strand is drawn and counts n-fold: for the small maps of the environment.
+  /// One strand of each n neighbors in the groom is drawn and counts n-fold: expectations stay, noise grows with n.
   std::size_t strand_stride = 1;
 };
 
-/// Counts the strands of `grooms` as `view` sees them. Segments that reach behind the near plane are left out.
+/// Counts the strands of `grooms` as each of `views` sees them. Segments that reach behind the near plane are left out.
 ///
 /// The origin of the layers is coarser than the map (OpacityMap::kOriginBlock): that costs little detail and saves time.
 /// Layer ends double from layer to layer and the last one reaches the farthest strand of all.
-/// The result is exact in integers: the same for any thread count. Complexity: O(control points + texels touched).
+/// The result is exact in integers: the same for any thread count. Complexity: O(views · (points drawn + texels touched)).
+std::vector<OpacityMap> build_opacity_maps(const std::vector<StrandLines>& grooms, std::span<const CameraView> views,
+                                           const OpacitySettings& settings = {});
+
+/// The same for one view.
 OpacityMap build_opacity_map(const std::vector<StrandLines>& grooms, const CameraView& view,
                              const OpacitySettings& settings = {});
 

@@ -149,6 +149,37 @@ TEST(OpacityMap, StridedStrandsCountForThoseLeftOut) {
   EXPECT_NEAR(mean / places, 20, 1);
 }
 
+TEST(OpacityMap, StrideIsBlindToPatternsInTheOrderOfStrands) {
+  // Every fourth strand lies in front, the others behind: a fixed stride would see only one kind.
+  std::vector<Straight> lines = slab(40000, 0);
+  for (std::size_t i = 0; i < lines.size(); ++i) lines[i].from.z = lines[i].to.z = i % 4 == 0 ? 0 : -0.5f;
+  const std::vector<GroomInstance> grooms{groom_of(lines, 1e-3f)};
+  const std::vector<StrandLines> all = strand_lines(grooms);
+  const CameraView view = light_views(directional({0, 0, -1}), bounds(all), 64).front();
+  const OpacityMap full = build_opacity_map(all, view), thin = build_opacity_map(all, view, {4});
+  double full_front = 0, thin_front = 0, full_all = 0, thin_all = 0, error2 = 0;
+  for (float y = -0.8f; y < 0.8f; y += 0.01f) {
+    const Vec3 front{0, y, -0.4f}, back{0, y, -1};
+    full_front += static_cast<double>(crossings_at(full, front)), thin_front += static_cast<double>(crossings_at(thin, front));
+    const double a = static_cast<double>(crossings_at(full, back)), b = static_cast<double>(crossings_at(thin, back));
+    full_all += a, thin_all += b, error2 += (b / a - 1) * (b / a - 1) / 160;
+  }
+  EXPECT_NEAR(thin_front / full_front, 1, 0.04);
+  EXPECT_NEAR(thin_all / full_all, 1, 0.03);
+  EXPECT_LT(std::sqrt(error2), 0.08);  // one texel's row has 625 strands, a quarter of which is drawn: 1/√156
+}
+
+TEST(OpacityMap, MapsDrawnTogetherAreThoseDrawnAlone) {
+  const std::vector<GroomInstance> grooms{groom_of(thicket(2000), 0.003f)};
+  const std::vector<StrandLines> all = strand_lines(grooms);
+  std::vector<CameraView> views;
+  for (const Vec3 d : {Vec3(0, 0, -1), Vec3(1, 0.3f, 0), Vec3(0.2f, -1, 0.1f)})
+    views.push_back(light_views(directional(d), bounds(all), 96).front());
+  const std::vector<OpacityMap> maps = build_opacity_maps(all, views);
+  ASSERT_EQ(maps.size(), views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) EXPECT_TRUE(same(maps[i], build_opacity_map(all, views[i]))) << i;
+}
+
 TEST(OpacityMap, SameBitsForAnyThreadsAndInstructionSet) {
   const GroomInstance groom = groom_of(thicket(3000), 0.003f);
   const Light light = directional({0.3f, -1, 0.2f});

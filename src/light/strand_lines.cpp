@@ -4,6 +4,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "core/rng.h"
 #include "frame/camera_view.h"
 #include "kernel/scalar.h"
 
@@ -63,6 +64,15 @@ std::size_t line_points(const StrandSet& set, std::size_t strand, std::size_t se
   return points < 2 ? 0 : (points - 1) / span_stride(set) * segments + 1;
 }
 
+/// One strand of [begin, begin + stride), below `count`. Which one is random: grooms have patterns in their order.
+std::size_t pick_strand(std::size_t begin, std::size_t stride, std::size_t count) {
+  if (stride == 1) return begin;
+  constexpr std::uint64_t kSeed = 0x6f706163;
+  const std::size_t choices = std::min(stride, count - begin);
+  const float u = Rng(kSeed, static_cast<std::uint32_t>(begin)).uniform();
+  return begin + std::min(static_cast<std::size_t>(u * static_cast<float>(choices)), choices - 1);
+}
+
 }  // namespace
 
 StrandLines::StrandLines(const GroomInstance& groom)
@@ -108,10 +118,10 @@ std::size_t StrandLines::fill(std::size_t first, std::size_t last, std::size_t s
   for (int k = 0; k < n; ++k) weights.push_back(basis_weights(set.basis, static_cast<float>(k) / static_cast<float>(n)));
   std::size_t points = 0, s = first;
   for (; s < last && (s == first || points < LineBlock::kPoints); s += stride)
-    points += line_points(set, s, static_cast<std::size_t>(n));
+    points += line_points(set, pick_strand(s, stride, last), static_cast<std::size_t>(n));
   reserve(block, points);
   block.count = 0;
-  for (std::size_t i = first; i < s; i += stride) append(i, weights, block);
+  for (std::size_t i = first; i < s; i += stride) append(pick_strand(i, stride, last), weights, block);
   for (std::size_t j = block.count; j < block.count + LineBlock::kPadding; ++j)
     block.x[j] = block.y[j] = block.z[j] = block.width[j] = 0;
   return s;

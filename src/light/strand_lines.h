@@ -20,8 +20,8 @@ class StrandLines {
   const Bounds& bounds() const { return bounds_; }  ///< of the control points, world space
   float mean_span() const { return mean_span_; }    ///< metres, over at most a thousand strands
 
-  /// Fills `block` with strands first, first + stride, … below `last`: at least one, as many as LineBlock::kPoints takes.
-  /// Returns the next one. 1 ≤ segments_per_span ≤ kMaxSegments; linear grooms take one whatever is asked for.
+  /// Fills `block` with one strand, picked by a random number of its own, of each `stride` strands from `first` up to
+  /// `last`: at least one, as many as LineBlock::kPoints takes. Returns where to go on. 1 ≤ segments_per_span ≤ kMaxSegments; linear grooms take one whatever is asked for.
   std::size_t fill(std::size_t first, std::size_t last, std::size_t stride, int segments_per_span, LineBlock& block) const;
   static constexpr int kMaxSegments = 4;
 
