@@ -115,6 +115,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
 
 void add_scene_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")->type_name("FILE")->allow_extra_args(false);
+  verb.add_flag("--no-head", o.no_head, "Leave away the mannequin, which shows below hair that was grown on it when no --mesh is given");
   verb.add_option("--scale", o.scale, "Meters per unit of the files; guessed without it")->check(CLI::PositiveNumber);
   verb.add_option("--up", o.up, "Axis of the files that points up: y, z, auto")->type_name("AXIS");
   verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");
@@ -156,7 +157,7 @@ void add_render(CLI::App& app) {
   verb->add_flag("--schema", o->schema, "Print the JSON schema of scene files and stop");
   add_machine_options(*verb);
   verb->footer(
-      "Without options: framed, three lights, brown hair.\n"
+      "Without options: framed, three lights, brown hair; below hair of `pelage grow`, the mannequin.\n"
       "Examples:\n"
       "  pelage render hair.tfx --mesh head.obj -o hair.png\n"
       "  pelage render hair.tfx -o hair.exr --size 1920x1080 --spp 16 --hair blond --stats\n"

@@ -21,7 +21,7 @@ struct RenderOptions {
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;
-  bool full_float = false, stats = false, json = false, schema = false;
+  bool no_head = false, full_float = false, stats = false, json = false, schema = false;
 };
 
 /// Reads the groom or scene file and applies the options to it. What the reader assumed is told in `notes`.

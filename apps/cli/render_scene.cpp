@@ -1,6 +1,7 @@
 // From the options of `pelage render` to a scene.
 #include <fmt/format.h>
 #include <pelage/error.h>
+#include <pelage/grow.h>
 
 #include <algorithm>
 #include <cmath>
@@ -91,6 +92,10 @@ void read_groom_scene(const RenderOptions& options, const Progress& progress, st
   // Meshes that belong to a groom come in its units and axes.
   for (const std::string& path : options.meshes)
     scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(read_mesh(path, report.scale, report.up));
+  if (options.meshes.empty() && !options.no_head && grown_on_mannequin(*groom.strands)) {
+    scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(mannequin_head());
+    notes.push_back("with the mannequin it was grown on; --no-head leaves it away");
+  }
 }
 
 void apply_settings(const RenderOptions& o, RenderSettings& s) {

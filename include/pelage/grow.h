@@ -65,4 +65,8 @@ StrandSet grow(const GrowSettings& settings, const TriangleMesh& surface, const 
 /// with smooth normals and a texture coordinate without seam on the scalp. Made by code; the same bits at every call.
 TriangleMesh mannequin_head();
 
+/// Whether `strands` stand on the scalp of mannequin_head(), as grow() leaves them there: then that head belongs below them.
+/// Told by the places of the roots, so that every file format keeps it and a groom that was moved or scaled lost it.
+bool grown_on_mannequin(const StrandSet& strands);
+
 }  // namespace pelage

@@ -162,6 +162,25 @@ TEST(Frame, BandsOfALargePictureMeetWithoutASeam) {
     ASSERT_EQ(std::memcmp(image.at(0, y), image.at(0, 0), 1100 * 4 * sizeof(float)), 0) << "row " << y;
 }
 
+// A strand that goes one pixel aside with every row: each row is the one before, moved by a pixel. A band that stood a row
+// too high or low would break it, which an upright strand cannot show.
+TEST(Frame, ASlantedStrandCrossesBandsWithoutAStep) {
+  const int size = 1100;
+  Scene scene = band_scene(size, 0.01f);
+  scene.grooms[0].strands = std::make_shared<StrandSet>(test::strand({{-0.8f, -0.8f, 0}, {0.8f, 0.8f, 0}}, 0.01f));
+  scene.settings.samples = 16;
+  scene.settings.shadows = false;
+  const Image image = render(scene).linear;
+  double covered = 0;
+  for (int y = 1; y < size; ++y)
+    for (int x = 0; x + 1 < size; ++x) {
+      const float here = image.at(x, y)[3];
+      ASSERT_NEAR(here, image.at(x + 1, y - 1)[3], 2.f / 16) << x << ", " << y;  // rounding may decide single samples
+      covered += static_cast<double>(here);
+    }
+  EXPECT_NEAR(covered / size, 0.01 * std::sqrt(2.) * size, 0.2) << "pixels a row; the corners cut a little off";
+}
+
 TEST(DebugViews, SayWhatIsThere) {
   Scene scene = band_scene(40, 0.2f);
   const auto middle = [&](View view) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "groom/benchmark_grooms.h"
+#include "groom/collide.h"
 #include "groom/head_shape.h"
 #include "groom/scalp.h"
 
@@ -93,7 +94,12 @@ TEST(Grow, SeedsDiffer) {
   GrowSettings s = small(HairStyle::kCurly);
   const StrandSet a = grow(s, head());
   s.seed += std::uint64_t{1} << 40;  // the high half counts too
-  EXPECT_FALSE(a.points == grow(s, head()).points);
+  const StrandSet b = grow(s, head());
+  EXPECT_FALSE(a.points == b.points);
+  std::size_t same_root = 0;
+  for (std::size_t i = 0; i < a.strand_count(); ++i)
+    for (std::size_t j = 0; j < b.strand_count(); ++j) same_root += a.points[a.offsets[i]] == b.points[b.offsets[j]];
+  EXPECT_EQ(same_root, 0u) << "hair stands elsewhere, not only differently";
 }
 
 TEST(Grow, EveryStyleKeepsTheInvariants) {
@@ -140,6 +146,23 @@ TEST(Grow, RootsStandOnTheScalp) {
   }
 }
 
+TEST(Grow, HairKnowsTheHeadItGrewOn) {
+  for (const HairStyle style : kStyles) EXPECT_TRUE(grown_on_mannequin(grow(small(style), head()))) << static_cast<int>(style);
+  EXPECT_FALSE(grown_on_mannequin(grow(small(HairStyle::kCoat), square())));
+  EXPECT_FALSE(grown_on_mannequin(StrandSet()));
+  const StrandSet hair = grow(small(HairStyle::kStraight), head());
+  const auto changed = [&](auto change) {
+    StrandSet other = hair;
+    for (Vec3& p : other.points) p = change(p);
+    return grown_on_mannequin(other);
+  };
+  EXPECT_TRUE(changed([](Vec3 p) { return p + Vec3(2e-4f, 0, 0); }));  // as a coarse file format might
+  EXPECT_FALSE(changed([](Vec3 p) { return p + Vec3(0, 0.01f, 0); }));
+  EXPECT_FALSE(changed([](Vec3 p) { return p * 1.1f; }));
+  EXPECT_FALSE(changed([](Vec3 p) { return Vec3(p.x, p.z, -p.y); }));
+  EXPECT_FALSE(changed([](Vec3 p) { return Vec3(p.x, p.y, -p.z); })) << "hair in the face: skin, but no scalp";
+}
+
 TEST(Grow, StrandsStayOutsideTheHead) {
   for (const HairStyle style : kStyles) {
     const StrandSet hair = grow(small(style, 4000), head());
@@ -156,6 +179,18 @@ TEST(Grow, LongHairLeavesTheFaceFree) {
     for (const Vec3 p : hair.points) in_face += std::abs(p.x) < 0.045f && p.y > -0.11f && p.y < 0.045f && p.z > 0.07f;
     EXPECT_LE(static_cast<double>(in_face), 1e-3 * static_cast<double>(hair.point_count())) << static_cast<int>(style);
   }
+}
+
+TEST(Collide, PushesOutOfTheFaceByItsShare) {
+  const Vec3 fringe(0, -0.03f, 0.2f), beside(0.2f, 0, 0);  // a hand before the nose; a shoulder away
+  EXPECT_EQ(groom::push_out_of_face(beside, 1), beside);
+  EXPECT_EQ(groom::push_out_of_face(fringe, 0), fringe);
+  const Vec3 out = groom::push_out_of_face(fringe, 1), half = groom::push_out_of_face(fringe, 0.5f);
+  const float way = length(out - fringe);
+  EXPECT_GT(way, 0.02f);
+  EXPECT_NEAR(length(half - fringe), way / 2, 1e-6f);
+  EXPECT_LT(length(groom::push_out_of_face(out, 1) - out), 0.1f * way) << "nothing left to push";
+  EXPECT_GT(groom::head_distance(out), 0.02f) << "well in front of the skin";
 }
 
 TEST(Grow, LengthsAndWidthsMatchTheSettings) {

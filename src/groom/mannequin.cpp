@@ -2,10 +2,12 @@
 
 #include <pelage/grow.h>
 
+#include <cmath>
 #include <utility>
 
 #include "core/parallel.h"
 #include "groom/head_shape.h"
+#include "groom/scalp.h"
 #include "groom/surface_nets.h"
 
 namespace pelage {
@@ -70,5 +72,16 @@ bool is_mannequin(const TriangleMesh& mesh) {
 }  // namespace groom
 
 TriangleMesh mannequin_head() { return groom::mannequin().mesh; }
+
+bool grown_on_mannequin(const StrandSet& strands) {
+  constexpr std::size_t kLooks = 512;           // roots looked at, all over the groom
+  constexpr float kSkin = 2e-3f, kEdge = 4e-3f;  // metres: chords of the mesh, and its triangles across the hairline
+  const std::size_t count = strands.strand_count(), stride = count / kLooks + 1;
+  for (std::size_t i = 0; i < count; i += stride) {
+    const Vec3 root = strands.points[strands.offsets[i]];
+    if (!(std::abs(groom::head_distance(root)) < kSkin && groom::hairline_distance(root) > -kEdge)) return false;
+  }
+  return count > 0;
+}
 
 }  // namespace pelage

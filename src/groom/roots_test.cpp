@@ -37,6 +37,15 @@ TEST(ScatterRoots, EveryPrefixIsSpreadEvenly) {
     EXPECT_GT(nearest_pair(roots, count), 0.5f / std::sqrt(static_cast<float>(count))) << count;
 }
 
+TEST(ScatterRoots, AnotherSeedIsAnotherPlaceForEveryRoot) {
+  const std::vector<Root> one = scatter_roots(plate(), 300, 1), again = scatter_roots(plate(), 300, 1);
+  for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one[i].position, again[i].position);
+  for (const std::uint64_t seed : {std::uint64_t{2}, (std::uint64_t{1} << 40) + 1}) {  // the low half and the high
+    for (const Root& other : scatter_roots(plate(), 300, seed))
+      for (const Root& root : one) ASSERT_NE(other.position, root.position) << seed;
+  }
+}
+
 TEST(ScatterRoots, FollowsAreaNotTriangles) {
   const std::vector<Root> roots = scatter_roots(plate(), 4000, 5);
   int quadrant[4] = {};

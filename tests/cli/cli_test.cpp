@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -210,6 +211,69 @@ TEST_F(Cli, ScenesRender) {
   const Outcome larger = run("render scene.json -o out.png --size 50x20 --json");
   EXPECT_EQ(nlohmann::json::parse(larger.out)["width"], 50) << "options win over the file";
   EXPECT_EQ(nlohmann::json::parse(run("render --schema").out)["title"], "Pelage scene");
+}
+
+TEST_F(Cli, GrownHairShowsTheHeadItGrewOn) {
+  const auto hash = [&](const std::string& arguments, bool head) {
+    const Outcome outcome = run("render --size 64x48 -o out.png --json " + arguments);
+    EXPECT_EQ(outcome.status, 0) << arguments << outcome.err;
+    EXPECT_EQ(outcome.err.find("mannequin it was grown on; --no-head") != std::string::npos, head) << arguments << ": " << outcome.err;
+    return outcome.status ? "" : nlohmann::json::parse(outcome.out)["hash"].get<std::string>();
+  };
+  std::ofstream(in("tile.obj")) << "v 0 0 0\nv 0.1 0 0\nv 0.1 0 -0.1\nf 1 2 3\n";
+  for (const char* hair : {"hair.pelage", "hair.tfx", "hair.hair"}) {  // in every format, also those without a comment
+    const std::string name = hair;
+    ASSERT_EQ(run("grow curly --strands 300 --points 16 --write-mesh head.ply -o " + name).status, 0);
+    const std::string shown = hash(name, true);
+    EXPECT_NE(hash(name + " --no-head", false), shown);
+    EXPECT_NE(hash(name + " --mesh tile.obj", false), shown) << "another mesh takes its place";
+  }
+  EXPECT_EQ(hash("hair.pelage --view depth --mesh head.ply", false), hash("hair.pelage --view depth", true)) << "the same head";
+  ASSERT_EQ(run("grow coat --strands 50 --mesh tile.obj -o tile.pelage").status, 0);
+  hash("tile.pelage", false);
+}
+
+TEST_F(Cli, GrowsEveryStyle) {
+  for (const char* style : {"straight", "wavy", "curly", "afro", "ponytail", "coat"}) {
+    const Outcome outcome = run(std::string("grow ") + style + " --strands 200 -o grown.pelage");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("grown.pelage: 200 strands")) << style;
+    EXPECT_THAT(run("info grown.pelage").out, HasSubstr("200")) << style;
+  }
+}
+
+TEST_F(Cli, GrowsOnAMeshOfAnyUnitsAndAxes) {
+  std::ofstream(in("tile.obj")) << "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n";  // cm, z up
+  const Outcome grown = run("grow coat --strands 50 --mesh tile.obj --mesh-scale 0.01 --mesh-up z --write-mesh out.obj -o tile.pelage");
+  ASSERT_EQ(grown.status, 0) << grown.err;
+  std::vector<std::array<float, 3>> vertices;
+  std::ifstream written(in("out.obj"));
+  for (std::string word; written >> word;)
+    if (std::array<float, 3> v; word == "v" && written >> v[0] >> v[1] >> v[2]) vertices.push_back(v);
+  EXPECT_THAT(vertices, testing::UnorderedElementsAre(std::array{0.f, 0.f, 0.f}, std::array{1.f, 0.f, 0.f}, std::array{0.f, 0.f, -1.f}));
+}
+
+TEST_F(Cli, GrowRefusesWhatItCannotDo) {
+  const std::tuple<const char*, int, const char*> cases[] = {
+      {"curly --strands 0", 1, "strands: 0 is outside 1 … 1000000"},
+      {"curly --strands 1000001", 1, "outside 1 … 1000000"},
+      {"curly --points 3", 1, "points: 3 is outside 4 … 1024"},
+      {"curly --length -1", 1, "length: -1 is outside 0.0001 … 10"},
+      {"curly --frizz 1.5", 1, "frizz: 1.5 is outside 0 … 1"},
+      {"curly --width nan", 1, "width: nan is outside 0 … 0.1"},
+      {"curly --mesh missing.obj", 1, "missing.obj"},
+      {"curley", 1, "did you mean \"curly\"?"},
+      {"curly --strands many", 2, "--strands"},
+      {"curly --strnds 5", 2, "did you mean --strands?"},
+      {"curly --mesh-up x", 2, "--mesh-up"},
+  };
+  for (const auto& [arguments, status, words] : cases) {
+    const Outcome outcome = run(std::string("grow ") + arguments + " -o out.pelage");
+    EXPECT_EQ(outcome.status, status) << arguments << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << arguments;
+  }
+  EXPECT_EQ(run("grow curly").status, 2) << "no output named";
+  EXPECT_THAT(files(), testing::IsEmpty());
 }
 
 TEST_F(Cli, BenchWritesALineAJsonAndRefusesUnknownNames) {
