@@ -70,7 +70,7 @@ void Flush(FragmentBuffer& f, PixelKey* keys) {
   f.count = 0;
 }
 
-void append(FragmentBuffer& f, Mask m, Uints pixel, Float depth, Uints id) {
+HWY_INLINE void append(FragmentBuffer& f, Mask m, Uints pixel, Float depth, Uints id) {
   const auto mask = hn::RebindMask(kUint, m.m);
   hn::StoreU(hn::Compress(pixel, mask), kUint, &f.pixel[f.count]);
   hn::StoreU(hn::Compress(depth.v, m.m), kFloat, &f.depth[f.count]);
