@@ -277,11 +277,34 @@ TEST(Strands, CyHairWithoutSegmentArray) {
   bytes.erase(128, 6);                     // segments
   poke(bytes, 20, 1.0f);                   // a default thickness that nobody set
   ImportReport report;
-  const StrandSet back = read_bytes(bytes, {}, &report);
+  ImportOptions options;
+  options.default_width = 8e-5f;
+  const StrandSet back = read_bytes(bytes, options, &report);
   EXPECT_EQ(back.offsets, set.offsets);
   EXPECT_EQ(back.colors, set.colors);
   EXPECT_TRUE(report.width_guessed);
   EXPECT_EQ(back.widths, std::vector<float>{8e-5f});
+}
+
+// Strands of a sparse groom stand for several; those of a full one are human hair. 0.1 m of strand each, in a box of 0.2 m.
+TEST(Strands, WidthsAreGuessedSoThatFewStrandsCover) {
+  const auto guessed = [](int strands) {
+    StrandSet set;
+    set.offsets.push_back(0);
+    for (int i = 0; i < strands; ++i) {
+      const float x = 0.2f * static_cast<float>(i % 50) / 49, z = 0.2f * static_cast<float>(i / 50 % 50) / 49;
+      const float y = 0.1f * static_cast<float>(i % 2);
+      set.points.insert(set.points.end(), {{x, y + 0.1f, z}, {x, y, z}});
+      set.offsets.push_back(static_cast<std::uint32_t>(set.points.size()));
+    }
+    set.widths = {0};
+    set.basis = CurveBasis::kLinear;
+    const std::string bytes = written(set, "usc");  // holds no widths
+    return read_bytes(bytes).width(0);
+  };
+  EXPECT_FLOAT_EQ(guessed(100), 8e-4f);
+  EXPECT_NEAR(guessed(5000), 0.24f / 500, 2e-5f);
+  EXPECT_FLOAT_EQ(guessed(50000), 8e-5f);
 }
 
 TEST(Strands, CyHairOfOtherProgramsIsTakenAsZUpUnlessItHangsAlongY) {
