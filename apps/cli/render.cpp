@@ -9,7 +9,7 @@
 #include <memory>
 #include <set>
 
-#include "core/nearest.h"
+#include "import_options.h"
 #include "io/atomic_file.h"
 #include "io/scene_tables.h"
 #include "terminal.h"
@@ -116,8 +116,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
 void add_scene_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")->type_name("FILE")->allow_extra_args(false);
   verb.add_flag("--no-head", o.no_head, "Leave away the mannequin, which shows below hair that was grown on it when no --mesh is given");
-  verb.add_option("--scale", o.scale, "Meters per unit of the files; guessed without it")->check(CLI::PositiveNumber);
-  verb.add_option("--up", o.up, "Axis of the files that points up: y, z, auto")->type_name("AXIS");
+  add_import_options(verb, o.import);
   verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");
   verb.add_option("--target", o.target, "What it looks at")->delimiter(',')->expected(3)->type_name("X,Y,Z");
   verb.add_option("--fov", o.fov, "Full vertical angle, degrees")->check(CLI::Range(0.01, 179.0));

@@ -15,9 +15,10 @@ namespace pelage::cli {
 struct RenderOptions {
   std::string input;
   std::vector<std::string> outputs, meshes, lights;
-  std::optional<std::string> size, view, alpha, tone_map, model, hair, background, environment, up;
+  ImportOptions import;
+  std::optional<std::string> size, view, alpha, tone_map, model, hair, background, environment;
   std::optional<int> samples, subdivisions, opacity_map_size;
-  std::optional<float> exposure, fov, turn, scale, width_scale, environment_rotation;
+  std::optional<float> exposure, fov, turn, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;

@@ -69,25 +69,12 @@ Light parse_light(const std::string& text) {
   return light;
 }
 
-// Files without widths often hold a tenth of a head of hair; strands of a hair's own width would then show the scalp. Drawn
-// wider by the root of what is missing, they cover more and still look like strands.
-float width_for_full_head(std::size_t strands, std::vector<std::string>& notes) {
-  constexpr float kFullHead = 100000;
-  const float scale = std::clamp(std::sqrt(kFullHead / static_cast<float>(std::max<std::size_t>(1, strands))), 1.f, 2.5f);
-  if (scale > 1) notes.push_back(fmt::format("no widths, and few strands: drawn {:.1f} times as wide as hair; --width-scale changes it", scale));
-  return scale;
-}
-
 void read_groom_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes, Scene& scene) {
-  ImportOptions import;
-  if (options.scale) import.scale = *options.scale;
-  if (options.up) import.up = by_name<UpAxis>("--up", *options.up, {{"auto", UpAxis::kAuto}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}});
   ImportReport report;
   GroomInstance& groom = scene.grooms.emplace_back();
-  groom.strands = std::make_shared<StrandSet>(read_strands(options.input, import, &report, progress));
+  groom.strands = std::make_shared<StrandSet>(read_strands(options.input, options.import, &report, progress));
   if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
   notes = report.notes;
-  if (report.width_guessed) groom.width_scale = width_for_full_head(groom.strands->strand_count(), notes);
   if (!report.repairs.clean()) notes.push_back(report.repairs.summary());
   // Meshes that belong to a groom come in its units and axes.
   for (const std::string& path : options.meshes)
@@ -173,8 +160,10 @@ Scene make_scene(const RenderOptions& options, const Progress& progress, std::ve
   const bool from_file = is_scene_file(options.input);
   if (from_file) {
     scene = read_scene(options.input, progress);
+    const float scale = options.import.scale > 0 ? options.import.scale : 1;
+    const UpAxis up = options.import.up == UpAxis::kZ ? UpAxis::kZ : UpAxis::kY;
     for (const std::string& path : options.meshes)
-      scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(read_mesh(path, options.scale.value_or(1.f)));
+      scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(read_mesh(path, scale, up));
     apply_settings(options, scene.settings);
   } else {
     apply_settings(options, scene.settings);  // before the camera, which frames for the picture's shape

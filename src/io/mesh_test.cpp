@@ -260,5 +260,39 @@ TEST(GlbMesh, Errors) {
   EXPECT_NE(error_of(glb(R"([])")), "");
 }
 
+constexpr char kTfxMesh[] =
+    "# two bones, a triangle\n"
+    "numOfBones 2\n# index, name\n0 root\n1 head\n"
+    "numOfVertices 3\n"
+    "0 0 0 0 0 0 1 0 1 0 0 1 0 0 0\n"
+    "1 1 0 0 0 0 1 0 1 0 0 1 0 0 0\r\n"
+    "2 0 1e0 0 0 0 1 0 1 0 0 1 0 0 0\n"
+    "\nnumOfTriangles 1\n# index, vertices\n0 0 1 2\n";
+
+TEST(TfxMesh, PositionsNormalsAndTriangles) {
+  const TriangleMesh mesh = read_bytes(kTfxMesh);
+  ASSERT_EQ(mesh.positions.size(), 3u);
+  EXPECT_EQ(mesh.positions[2], Vec3(0, 1, 0));
+  EXPECT_EQ(mesh.normals[1], Vec3(0, 0, 1));
+  ASSERT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.triangles[0], (Triangle{0, 1, 2}));
+}
+
+TEST(TfxMesh, ErrorsAndTruncation) {
+  const std::string whole = kTfxMesh;
+  const std::size_t last_vertex = whole.size() - 2;  // without its end of line the file is whole
+  for (std::size_t n = 0; n < last_vertex; ++n) ASSERT_NE(error_of(whole.substr(0, n)), "") << n;
+  const auto with = [&](const std::string& what, const std::string& instead) {
+    std::string text = whole;
+    text.replace(text.find(what), what.size(), instead);
+    return error_of(text);
+  };
+  EXPECT_NE(with("0 0 1 2", "0 0 1 3").find("line 13: '3' is none of the 3 vertices"), std::string::npos) << with("0 0 1 2", "0 0 1 3");
+  EXPECT_NE(with("numOfVertices 3", "numOfVertices 4000000000").find("more than the rest of the file"), std::string::npos);
+  EXPECT_NE(with("1 1 0 0", "2 1 0 0").find("row 1 is due"), std::string::npos);
+  EXPECT_NE(with("1e0", "1e99").find("'1e99' is no number"), std::string::npos);
+  EXPECT_NE(with("numOfTriangles 1", "numOfTriangles 0"), "");
+}
+
 }  // namespace
 }  // namespace pelage::io

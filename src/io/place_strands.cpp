@@ -140,15 +140,15 @@ void choose_widths(FileStrands& file, const ImportOptions& options, ImportReport
   const float median = median_width(widths) * report.scale;
   const bool absurd = !(median >= kThinnest && median <= kThickest);
   if (widths.empty() || (file.width_is_fallback && absurd)) {
-    const float width = options.default_width > 0 ? options.default_width : guess_width(file.strands, report.scale);
-    if (!widths.empty() && widths[0] != 0)
+    report.width_guessed = !(options.default_width > 0);
+    const float width = report.width_guessed ? guess_width(file.strands, report.scale) : options.default_width;
+    if (report.width_guessed && !widths.empty() && widths[0] != 0)
       report.notes.push_back(fmt::format("the default thickness of the file, {} units, is no width of a hair; "
-                                         "{:.3g} mm is used", widths[0], width * 1e3f));
-    else if (width > kHumanHair && !(options.default_width > 0))
+                                         "{:.3g} mm assumed; --width overrides it", widths[0], width * 1e3f));
+    else if (report.width_guessed && width > kHumanHair)
       report.notes.push_back(fmt::format("no widths in the file: {:.3g} mm assumed, so that strands this few cover "
-                                         "(hair is 0.05 to 0.1 mm)", width * 1e3f));
+                                         "(hair is 0.05 to 0.1 mm); --width overrides it", width * 1e3f));
     widths.assign(1, width);
-    report.width_guessed = true;
     return;
   }
   if (absurd)

@@ -91,6 +91,15 @@ TEST(RealFiles, PlyAndGlbMeshes) {
   EXPECT_EQ(monkey.uv.size(), 8098u);
 }
 
+TEST(RealFiles, TfxMeshes) {
+  PELAGE_NEEDS(body, "meshes/Ratboy_body.tfxmesh");
+  PELAGE_NEEDS(hand, "meshes/Ratboy_left_hand.tfxmesh");
+  EXPECT_EQ(read_mesh(body).triangles.size(), 25814u);
+  EXPECT_EQ(read_mesh(body).positions.size(), 12909u);
+  EXPECT_EQ(read_mesh(hand).triangles.size(), 2490u);
+  EXPECT_EQ(read_mesh(hand).positions.size(), 1247u);
+}
+
 TEST(RealFiles, Environments) {
   const std::pair<const char*, float> maps[] = {{"env/studio.hdr", 3568.f}, {"env/sunset.hdr", 2176.f}, {"env/forest.hdr", 74.5f}};
   for (const auto& [name, largest] : maps) {

@@ -282,8 +282,10 @@ TEST(Strands, CyHairWithoutSegmentArray) {
   const StrandSet back = read_bytes(bytes, options, &report);
   EXPECT_EQ(back.offsets, set.offsets);
   EXPECT_EQ(back.colors, set.colors);
-  EXPECT_TRUE(report.width_guessed);
+  EXPECT_FALSE(report.width_guessed);
   EXPECT_EQ(back.widths, std::vector<float>{8e-5f});
+  read_bytes(bytes, {}, &report);
+  EXPECT_TRUE(report.width_guessed);
 }
 
 // Strands of a sparse groom stand for several; those of a full one are human hair. 0.1 m of strand each, in a box of 0.2 m.

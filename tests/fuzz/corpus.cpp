@@ -85,5 +85,7 @@ int main(int argc, char** argv) {
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   spill(folder("mesh_glb") + "triangle", glb());
+  spill(folder("mesh_tfxmesh") + "triangle",
+        "numOfBones 1\n0 root\nnumOfVertices 3\n0 0 0 0 0 0 1\n1 1 0 0 0 0 1\n2 0 1 0 0 0 1\nnumOfTriangles 1\n0 0 1 2\n");
   return 0;
 }
