@@ -36,7 +36,8 @@ done
 sintel=$data/grooms/SintelHairOriginal-sintel_hair.16points.tfx
 if [ -f "$sintel" ]; then
   picture sintel "$sintel" --mesh "$data/meshes/sintel.obj" --mesh "$data/meshes/sintel-eyes.obj" --hair red
-  picture ratboy "$data/grooms/Ratboy_mohawk.tfx"
+  picture ratboy "$data/grooms/Ratboy_mohawk.tfx" --mesh "$data/meshes/Ratboy_body.tfxmesh" \
+    --mesh "$data/meshes/Ratboy_left_hand.tfxmesh" --mesh "$data/meshes/Ratboy_right_hand.tfxmesh"
 else
   echo "No real grooms in $data (README.md says where to find some); set PELAGE_DATA to their folder."
 fi
