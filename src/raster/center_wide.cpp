@@ -18,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/wide-inl.h"
+#include "raster/compress-inl.h"
 #include "raster/segment_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -71,14 +72,21 @@ void Flush(FragmentBuffer& f, PixelKey* keys) {
 }
 
 HWY_INLINE void append(FragmentBuffer& f, Mask m, Uints pixel, Float depth, Uints id) {
-  const auto mask = hn::RebindMask(kUint, m.m);
-  hn::StoreU(hn::Compress(pixel, mask), kUint, &f.pixel[f.count]);
-  hn::StoreU(hn::Compress(depth.v, m.m), kFloat, &f.depth[f.count]);
-  hn::StoreU(hn::Compress(id, mask), kUint, &f.id[f.count]);
-  f.count += hn::CountTrue(kUint, mask);
+  const Compressor compress(m);
+  hn::StoreU(compress(pixel), kUint, &f.pixel[f.count]);
+  hn::StoreU(compress(depth.v), kFloat, &f.depth[f.count]);
+  hn::StoreU(compress(id), kUint, &f.id[f.count]);
+  f.count += compress.count();
 }
 
-/// One column of each lane: appends the covered rows.
+HWY_INLINE void append_visible(const SegmentLanes& w, Mask covered, Float column, Float row, Float s, FragmentBuffer& f,
+                               PixelKey* keys) {
+  if (f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity) Flush(f, keys);
+  append(f, covered, pixels_at(w, column, row), wide::raster_band_depth(w.band, s), w.id);
+}
+
+/// One column of each lane: appends the covered rows. A thin band covers one at most, in some lanes and not in others: it is
+/// appended without asking whether any lane has it, since with 4 or 8 lanes that branch cannot be predicted.
 template <bool kThin>
 HWY_INLINE void visit_column(const SegmentLanes& w, Float column, FragmentBuffer& f, PixelKey* keys) {
   const wide::RasterBand& band = w.band;
@@ -88,14 +96,14 @@ HWY_INLINE void visit_column(const SegmentLanes& w, Float column, FragmentBuffer
   Float row = wide::raster_first_row(center, half, half_pixel);
   if (!kThin) row = max(row, Float(0.0f));
   Mask open = column <= w.last && wide::raster_row_covered(row, half_pixel, center, half) && row < w.rows;
-  if (kThin) open = open && row >= Float(0.0f);
+  if (kThin) {
+    open = open && row >= Float(0.0f) && wide::raster_between_caps(band, u, row + half_pixel);
+    append_visible(w, open, column, row, s, f, keys);
+    return;
+  }
   while (wide::any(open)) {
     const Mask covered = open && wide::raster_between_caps(band, u, row + half_pixel);
-    if (wide::any(covered)) {
-      if (f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity) Flush(f, keys);
-      append(f, covered, pixels_at(w, column, row), wide::raster_band_depth(band, s), w.id);
-    }
-    if (kThin) return;
+    if (wide::any(covered)) append_visible(w, covered, column, row, s, f, keys);
     row = row + Float(1.0f);
     open = open && wide::raster_row_covered(row, half_pixel, center, half) && row < w.rows;
   }

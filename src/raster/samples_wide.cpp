@@ -16,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include "kernel/wide-inl.h"
+#include "raster/compress-inl.h"
 #include "raster/segment_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -103,12 +104,13 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleOffsets& o, Floa
     const auto some = hn::Ne(mask, hn::Zero(kUint));
     if (!hn::AllFalse(kUint, some)) {
       if (f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity) flush<kSamples>(f, keys);
-      hn::StoreU(hn::Compress(pixels_at(w, column, row), some), kUint, &f.pixel[f.count]);
-      hn::StoreU(hn::Compress(hn::BitCast(kUint, wide::raster_band_depth(band, s).v), some), kUint,
+      const Compressor compress(Mask{hn::RebindMask(wide::kFloatTag, some)});
+      hn::StoreU(compress(pixels_at(w, column, row)), kUint, &f.pixel[f.count]);
+      hn::StoreU(compress(hn::BitCast(kUint, wide::raster_band_depth(band, s).v)), kUint,
                  reinterpret_cast<std::uint32_t*>(&f.depth[f.count]));
-      hn::StoreU(hn::Compress(w.id, some), kUint, &f.id[f.count]);
-      hn::StoreU(hn::Compress(mask, some), kUint, &f.mask[f.count]);
-      f.count += hn::CountTrue(kUint, some);
+      hn::StoreU(compress(w.id), kUint, &f.id[f.count]);
+      hn::StoreU(compress(mask), kUint, &f.mask[f.count]);
+      f.count += compress.count();
     }
     row = row + Float(1.0f);
   }
