@@ -28,6 +28,18 @@ HWY_INLINE Float gather(const float* base, Int index) { return hn::GatherIndex(F
 HWY_INLINE Int gather(const std::uint32_t* base, Int index) {
   return hn::BitCast(IntTag(), hn::GatherIndex(UintTag(), base, index.v));
 }
+/// Values that other threads change meanwhile: each lane is a value that stood there, maybe one that is no longer.
+HWY_INLINE Int gather_shared(const std::uint32_t* base, Int index) {
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR
+  HWY_ALIGN std::int32_t at[hn::MaxLanes(IntTag())];
+  hn::Store(index.v, IntTag(), at);
+  for (std::size_t l = 0; l < hn::Lanes(IntTag()); ++l)
+    at[l] = static_cast<std::int32_t>(__atomic_load_n(base + at[l], __ATOMIC_RELAXED));
+  return hn::Load(IntTag(), at);
+#else
+  return gather(base, index);  // one instruction, four bytes at a time
+#endif
+}
 HWY_INLINE Int to_int(Float a) { return hn::ConvertTo(IntTag(), a.v); }
 HWY_INLINE Float to_float(Int a) { return hn::ConvertTo(FloatTag(), a.v); }
 HWY_INLINE Int select(Mask m, Int a, Int b) { return hn::IfThenElse(hn::RebindMask(IntTag(), m.m), a.v, b.v); }

@@ -131,7 +131,7 @@ void SplatDepths(const LineBlock& lines, const SplatTarget& target) {
   alignas(64) float depth[kMaxLanes];
   for_each_piece(target.view, lines, OpacityMap::kOriginBlock, [&](Mask active, Float column, Float row, Float z, Float) {
     const Int at = origin_index(target, column, row);
-    const Float seen(hn::BitCast(FloatTag(), gather(target.first_depth, at).v));
+    const Float seen(hn::BitCast(FloatTag(), gather_shared(target.first_depth, at).v));
     std::uint64_t bits = lane_bits(active && (z < seen));
     if (bits == 0) return;
     store(at, index), store(z, depth);
