@@ -3,6 +3,7 @@
 
 namespace pelage::bench {
 
+void add_io_cases(Suite& suite);
 void add_assemble_cases(Suite& suite);
 void add_raster_cases(Suite& suite);
 void add_light_cases(Suite& suite);
@@ -11,6 +12,7 @@ void add_frame_cases(Suite& suite);
 
 Suite all_cases() {
   Suite suite;
+  add_io_cases(suite);
   add_assemble_cases(suite);
   add_raster_cases(suite);
   add_light_cases(suite);

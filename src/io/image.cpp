@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "io/atomic_file.h"
 #include "io/byte_source.h"
@@ -30,6 +32,21 @@ void linearize_colors(Image& image) {
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+// A PNG must reach its last chunk: libpng would tell the user of the terminal about one that does not, instead of us.
+void check_png_is_whole(const io::ByteSource& source) {
+  constexpr std::string_view kMagic = "\x89PNG\r\n\x1a\n";
+  std::string head(std::min<std::uint64_t>(source.size(), kMagic.size()), '\0');
+  source.read(0, head.size(), head.data(), "magic");
+  if (head != kMagic) return;
+  for (std::uint64_t at = kMagic.size();;) {  // chunk: big-endian bytes of data, four letters, data, checksum
+    const auto b = source.get<std::array<unsigned char, 8>>(at, "PNG chunk");
+    const std::uint64_t bytes = std::uint64_t{b[0]} << 24 | std::uint64_t{b[1]} << 16 | std::uint64_t{b[2]} << 8 | b[3];
+    source.require(at, 12 + bytes, "PNG chunk");
+    if (b[4] == 'I' && b[5] == 'E' && b[6] == 'N' && b[7] == 'D') return;
+    at += 12 + bytes;
+  }
+}
 
 std::string lower_extension(const std::string& path) {
   const std::size_t dot = path.find_last_of("./");
@@ -62,7 +79,7 @@ OIIO::ImageSpec make_spec(const std::string& path, const Image& image, const std
 }  // namespace
 
 Image read_image(const std::string& path, bool linearize) {
-  static_cast<void>(io::ByteSource::open(path));  // says best why a file cannot be read
+  check_png_is_whole(io::ByteSource::open(path));  // which says best why a file cannot be read
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes);

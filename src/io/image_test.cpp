@@ -129,5 +129,19 @@ TEST(Images, EveryTruncationIsAnErrorOrAWholePicture) {
   }
 }
 
+TEST(Images, ACutPngIsAnErrorAndNothingIsPrinted) {
+  const TemporaryFolder folder;
+  write_image(folder / "a.png", pattern({"R", "G", "B"}));
+  const std::string whole = kit::slurp(folder / "a.png");
+  testing::internal::CaptureStderr();
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    kit::spill(folder / "a.png", whole.substr(0, n));
+    EXPECT_THROW(read_image(folder / "a.png"), Error) << n << " bytes";
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  kit::spill(folder / "a.png", whole + "after the end");
+  EXPECT_EQ(read_image(folder / "a.png").width, 17);
+}
+
 }  // namespace
 }  // namespace pelage
