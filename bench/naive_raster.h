@@ -6,7 +6,7 @@
 
 #include "assemble/assemble.h"
 #include "core/parallel.h"
-#include "frame/segment_lookup.h"
+#include "frame/curve_basis.h"
 #include "raster/band_walk.h"
 #include "raster/keys.h"
 #include "raster/sample_positions.h"
@@ -17,16 +17,6 @@ struct NaivePoint {
   float x, y, depth, radius;
   Vec2 cap;
 };
-
-inline Vec4 naive_weights(CurveBasis basis, float t) {
-  switch (basis) {
-    case CurveBasis::kCatmullRom: return kernel::curve_catmull_rom_weights(t);
-    case CurveBasis::kBSpline: return kernel::curve_bspline_weights(t);
-    case CurveBasis::kBezier: return kernel::curve_bezier_weights(t);
-    case CurveBasis::kLinear: break;
-  }
-  return kernel::curve_linear_weights(t);
-}
 
 inline NaivePoint naive_project(const CameraView& view, Vec3 c, float half_width) {
   const float scale = view.perspective ? view.focal / c.z : view.focal;
@@ -58,7 +48,7 @@ inline void naive_points(const AssembleJob& job, std::size_t strand, std::vector
     const float wa = set.width(i) * half, wb = set.width(i + stride) * half;
     for (std::uint32_t k = 0; k < (s + 1 == spans ? parts + 1 : parts); ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(parts);
-      const Vec3 c = kernel::curve_combine(naive_weights(set.basis, t), p[0], p[1], p[2], p[3]);
+      const Vec3 c = kernel::curve_combine(basis_weights(set.basis, t), p[0], p[1], p[2], p[3]);
       out.push_back(naive_project(job.view, c, wa + (wb - wa) * t));
     }
   }

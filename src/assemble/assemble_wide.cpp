@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "frame/curve_basis.h"
 #include "frame/segment_lookup.h"
 #include "kernel/scalar.h"
 
@@ -16,16 +17,6 @@
 #define PELAGE_ASSEMBLE_SCALAR_PART_
 namespace pelage {
 namespace {
-
-Vec4 basis_weights(CurveBasis basis, float t) {
-  switch (basis) {
-    case CurveBasis::kCatmullRom: return kernel::curve_catmull_rom_weights(t);
-    case CurveBasis::kBSpline: return kernel::curve_bspline_weights(t);
-    case CurveBasis::kBezier: return kernel::curve_bezier_weights(t);
-    case CurveBasis::kLinear: break;
-  }
-  return kernel::curve_linear_weights(t);
-}
 
 /// Control points of one strand in camera space, with a phantom point before the first and one after the last.
 /// Point i of the strand stands at i + 1; whole lanes may be read behind the end.

@@ -32,30 +32,10 @@ Span load_span(const StrandSet& set, std::uint32_t strand, std::uint32_t span) {
   return r;
 }
 
-Vec4 weights(CurveBasis basis, float t) {
-  switch (basis) {
-    case CurveBasis::kCatmullRom: return kernel::curve_catmull_rom_weights(t);
-    case CurveBasis::kBSpline: return kernel::curve_bspline_weights(t);
-    case CurveBasis::kBezier: return kernel::curve_bezier_weights(t);
-    case CurveBasis::kLinear: break;
-  }
-  return kernel::curve_linear_weights(t);
-}
-
-Vec4 derivative(CurveBasis basis, float t) {
-  switch (basis) {
-    case CurveBasis::kCatmullRom: return kernel::curve_catmull_rom_derivative(t);
-    case CurveBasis::kBSpline: return kernel::curve_bspline_derivative(t);
-    case CurveBasis::kBezier: return kernel::curve_bezier_derivative(t);
-    case CurveBasis::kLinear: break;
-  }
-  return kernel::curve_linear_derivative(t);
-}
-
 Vec3 blend(const Span& s, Vec4 w) { return kernel::curve_combine(w, s.p[0], s.p[1], s.p[2], s.p[3]); }
 
 Vec3 direction(const Span& s, CurveBasis basis, float t) {
-  for (const Vec3 d : {blend(s, derivative(basis, t)), s.p[2] - s.p[1], s.p[3] - s.p[0]})
+  for (const Vec3 d : {blend(s, basis_derivative(basis, t)), s.p[2] - s.p[1], s.p[3] - s.p[0]})
     if (dot(d, d) > 0) return d;
   return {0, 1, 0};
 }
@@ -83,7 +63,7 @@ StrandSurface surface_at(const Scene& scene, const SegmentNumbering& numbering, 
   const float local = (static_cast<float>(s.k) + t) / static_cast<float>(numbering.subdivisions[s.groom]);
   const std::uint32_t spans = span_count(set.basis, set.offsets[s.strand + 1] - set.offsets[s.strand]);
   StrandSurface r;
-  r.position = transform_point(groom.transform, blend(span, weights(set.basis, local)));
+  r.position = transform_point(groom.transform, blend(span, basis_weights(set.basis, local)));
   r.tangent = normalize(transform_vector(groom.transform, direction(span, set.basis, local)));
   r.u = (static_cast<float>(s.span) + local) / static_cast<float>(spans);
   r.width = (span.width[0] + (span.width[1] - span.width[0]) * local) * groom.width_scale *
@@ -97,7 +77,7 @@ float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, c
   const Span span = load_span(*groom.strands, s.strand, s.span);
   const float step = 1.f / static_cast<float>(numbering.subdivisions[s.groom]);
   const auto end = [&](float k) {
-    const Vec3 p = blend(span, weights(groom.strands->basis, k * step));
+    const Vec3 p = blend(span, basis_weights(groom.strands->basis, k * step));
     return transform_point(view.world_to_camera, transform_point(groom.transform, p));
   };
   const Vec3 a = end(static_cast<float>(s.k)), b = end(static_cast<float>(s.k + 1));

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "frame/curve_basis.h"
 #include "frame/frame.h"
 
 namespace pelage {
@@ -21,12 +22,6 @@ struct StrandSurface {
   float u = 0;      ///< 0 at the root … 1 at the tip, by curve parameter
   float width = 0;  ///< diameter, metres
 };
-
-/// Spans of a strand of `points` control points: 0 for fewer than a span needs.
-inline std::uint32_t span_count(CurveBasis basis, std::uint32_t points) {
-  if (points < 2) return 0;
-  return basis == CurveBasis::kBezier ? (points - 1) / 3 : points - 1;
-}
 
 /// The segment with this id, by binary search over the offsets: O(log strands). `id` must be one that raster wrote.
 SegmentRef find_segment(const Scene& scene, const SegmentNumbering& numbering, std::uint32_t id);

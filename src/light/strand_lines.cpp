@@ -6,20 +6,11 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "frame/curve_basis.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
 namespace {
-
-Vec4 basis_weights(CurveBasis basis, float t) {
-  switch (basis) {
-    case CurveBasis::kCatmullRom: return kernel::curve_catmull_rom_weights(t);
-    case CurveBasis::kBSpline: return kernel::curve_bspline_weights(t);
-    case CurveBasis::kBezier: return kernel::curve_bezier_weights(t);
-    case CurveBasis::kLinear: break;
-  }
-  return kernel::curve_linear_weights(t);
-}
 
 std::size_t span_stride(const StrandSet& set) { return set.basis == CurveBasis::kBezier ? 3 : 1; }
 
