@@ -7,11 +7,9 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
-#include <set>
 
-#include "import_options.h"
-#include "io/atomic_file.h"
 #include "io/scene_tables.h"
+#include "picture_file.h"
 #include "terminal.h"
 #include "verbs.h"
 
@@ -20,26 +18,6 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string extension_of(const std::string& path) {
-  const std::size_t dot = path.find_last_of("./");
-  return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot + 1);
-}
-
-// Before the long work: an output that cannot be written is told now. Opens what writing would open, and drops it.
-void check_output(const std::string& path) {
-  static const std::set<std::string> known{"exr", "png", "hdr"};
-  if (!known.count(extension_of(path))) throw Error(path, "", "no known picture format", "use .exr, .png or .hdr");
-  const io::AtomicFile probe(path);
-}
-
-// R, G, B, and A where something shows through.
-Image without_alpha(const Image& image) {
-  Image result(image.width, image.height, {"R", "G", "B"});
-  for (std::size_t i = 0, o = 0; i < image.pixels.size(); i += 4, o += 3)
-    std::copy_n(image.pixels.data() + i, 3, result.pixels.data() + o);
-  return result;
 }
 
 // Appends the channels of other views of the same scene: their own passes, without light.
@@ -100,42 +78,13 @@ void render_verb(const RenderOptions& options) {
 }
 
 void add_picture_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--size", o.size, "Pixels, e.g. 1920x1080")->type_name("WxH");
   verb.add_option("--spp", o.samples, "Samples per pixel")->check(CLI::IsMember({1, 2, 4, 8, 16}));
   verb.add_option("--view", o.view, "beauty, strand-id, u, tangent, depth, coverage, overdraw or albedo")->type_name("NAME");
   verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic")->type_name("NAME");
-  verb.add_option("--exposure", o.exposure, "Stops")->check(CLI::Range(-100.0, 100.0));
-  verb.add_option("--tone-map", o.tone_map, "Curve of PNG output: aces, none")->type_name("NAME");
-  verb.add_option("--background", o.background, "Linear R,G,B, or transparent");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')
       ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw"}));
   verb.add_flag("--float", o.full_float, "EXR with 32 bits a channel instead of 16");
-}
-
-void add_scene_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")->type_name("FILE")->allow_extra_args(false);
-  verb.add_flag("--no-head", o.no_head, "Leave away the mannequin, which shows below hair that was grown on it when no --mesh is given");
-  add_import_options(verb, o.import);
-  verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");
-  verb.add_option("--target", o.target, "What it looks at")->delimiter(',')->expected(3)->type_name("X,Y,Z");
-  verb.add_option("--fov", o.fov, "Full vertical angle, degrees")->check(CLI::Range(0.01, 179.0));
-  verb.add_option("--turn", o.turn, "Takes the camera around the target, degrees")->check(CLI::Range(-3600.0, 3600.0));
-  verb.add_flag("--ortho", o.orthographic, "Orthographic camera");
-  verb.add_option("--light", o.lights, "directional:DX,DY,DZ:R,G,B or point:X,Y,Z:R,G,B; replaces the lights; may be repeated")
-      ->type_name("LIGHT")->allow_extra_args(false);
-  verb.add_option("--env", o.environment, "Latitude-longitude image that lights the scene")->type_name("FILE");
-  verb.add_option("--env-rotation", o.environment_rotation, "Degrees about +Y")->check(CLI::Range(-3600.0, 3600.0));
-  verb.add_flag("--env-visible", o.environment_visible, "Show the environment behind the scene");
-  verb.add_flag("--no-shadows", o.no_shadows, "Light passes through everything");
-}
-
-void add_hair_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--hair", o.hair, "black, brown, light-brown, blond, red or white")->type_name("NAME");
-  verb.add_option("--color", o.color, "Linear color of a dense tuft, 0…1")->delimiter(',')->expected(3)->type_name("R,G,B")->check(CLI::Range(0.0, 1.0));
-  verb.add_option("--melanin", o.melanin, "Eumelanin and pheomelanin")->delimiter(',')->expected(1, 2)->type_name("E[,P]")->check(CLI::Range(0.0, 100.0));
-  verb.add_option("--model", o.model, "Fiber scattering: kajiya-kay, marschner, zhu")->type_name("NAME");
-  verb.add_option("--width-scale", o.width_scale, "Multiplies every width")->check(CLI::PositiveNumber);
   verb.add_option("--subdivisions", o.subdivisions, "Segments per span; 0 chooses")->check(CLI::Range(0, 64));
   verb.add_flag("--no-dual-scattering", o.no_dual_scattering, "Single scattering only");
   verb.add_option("--opacity-map", o.opacity_map_size, "Texels a side of a light's map")->check(CLI::Range(64, 4096));
@@ -148,9 +97,8 @@ void add_render(CLI::App& app) {
   auto o = std::make_shared<RenderOptions>();
   verb->add_option("INPUT", o->input, "Groom file, or scene file (JSON)")->type_name("FILE");
   verb->add_option("-o,--output", o->outputs, "Picture to write: .exr, .png or .hdr; may be repeated")->type_name("FILE")->allow_extra_args(false);
-  add_picture_options(*verb, *o);
   add_scene_options(*verb, *o);
-  add_hair_options(*verb, *o);
+  add_picture_options(*verb, *o);
   verb->add_flag("--stats", o->stats, "Print time and memory of every stage");
   verb->add_flag("--json", o->json, "Print them as JSON");
   verb->add_flag("--schema", o->schema, "Print the JSON schema of scene files and stop");

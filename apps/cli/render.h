@@ -9,6 +9,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace pelage::cli {
 
 /// As typed; what was not typed is empty and keeps the scene's value.
@@ -24,6 +28,9 @@ struct RenderOptions {
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;
   bool no_head = false, full_float = false, stats = false, json = false, schema = false;
 };
+
+/// Adds the options that say what is seen and how it is shown: size, camera, light, hair, display.
+void add_scene_options(CLI::App& verb, RenderOptions& options);
 
 /// Reads the groom or scene file and applies the options to it. What the reader assumed is told in `notes`.
 Scene make_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes);

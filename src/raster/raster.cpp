@@ -1,16 +1,14 @@
 #include "raster/raster.h"
 
-#include <pelage/error.h>
-
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <atomic>
-#include <mutex>
 
 #include "assemble/assemble.h"
 #include "core/check.h"
 #include "core/parallel.h"
+#include "core/shared_progress.h"
 #include "raster/analytic.h"
 #include "raster/band_area.h"
 #include "raster/band_walk.h"
@@ -63,27 +61,6 @@ void raster_block(Worker& worker, const RasterLayers& layers, GBuffer& out) {
   if (layers.overdraw) count_overdraw(block, out);
 }
 
-/// Tells progress from whichever thread gets there first, and passes a cancellation on.
-class SharedProgress {
- public:
-  SharedProgress(const Progress& progress, std::uint64_t total) : progress_(progress), total_(total) {}
-  void add(std::uint64_t done) {
-    const std::uint64_t now = done_.fetch_add(done, std::memory_order_relaxed) + done;
-    if (!progress_) return;
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock || now < told_) return;
-    told_ = now;
-    if (!progress_("raster", static_cast<double>(now) / static_cast<double>(total_)))
-      throw Error("raster", "", "cancelled", "");
-  }
-
- private:
-  const Progress& progress_;
-  std::uint64_t total_, told_ = 0;
-  std::atomic<std::uint64_t> done_{0};
-  std::mutex mutex_;
-};
-
 /// Assembles all strands before `view` and enters them into `out`, task by task. Returns the number of segments.
 std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
                              const RasterLayers& layers, GBuffer& out, SharedProgress& progress) {
@@ -115,7 +92,7 @@ std::uint64_t raster_strands(const Scene& scene, const CameraView& view, const S
   const bool in_cells = cells.per_pixel > 1;
   std::uint64_t strands = 0;
   for (const GroomInstance& groom : scene.grooms) strands += groom.strands->strand_count();
-  SharedProgress shared(progress, std::max<std::uint64_t>(1, in_cells ? 2 * strands : strands));
+  SharedProgress shared(progress, "raster", std::max<std::uint64_t>(1, in_cells ? 2 * strands : strands));
   RasterLayers in_pixels = layers;
   in_pixels.analytic = layers.analytic && !in_cells;
   const std::uint64_t segments = stream_strands(scene, view, numbering, in_pixels, out, shared);

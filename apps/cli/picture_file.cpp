@@ -1,0 +1,30 @@
+#include "picture_file.h"
+
+#include <pelage/error.h>
+
+#include <algorithm>
+#include <set>
+
+#include "io/atomic_file.h"
+
+namespace pelage::cli {
+
+std::string extension_of(const std::string& path) {
+  const std::size_t dot = path.find_last_of("./");
+  return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot + 1);
+}
+
+void check_output(const std::string& path) {
+  static const std::set<std::string> known{"exr", "png", "hdr"};
+  if (!known.count(extension_of(path))) throw Error(path, "", "no known picture format", "use .exr, .png or .hdr");
+  const io::AtomicFile probe(path);
+}
+
+Image without_alpha(const Image& image) {
+  Image result(image.width, image.height, {"R", "G", "B"});
+  for (std::size_t i = 0, o = 0; i < image.pixels.size(); i += 4, o += 3)
+    std::copy_n(image.pixels.data() + i, 3, result.pixels.data() + o);
+  return result;
+}
+
+}  // namespace pelage::cli

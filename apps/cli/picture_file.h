@@ -1,0 +1,19 @@
+// The files that pictures go to.
+#pragma once
+
+#include <pelage/image.h>
+
+#include <string>
+
+namespace pelage::cli {
+
+/// After the last dot of the file's name; empty without one.
+std::string extension_of(const std::string& path);
+
+/// Before long work: throws Error where no picture can be written to `path`. Opens what writing would open, and drops it.
+void check_output(const std::string& path);
+
+/// The first three of four channels.
+Image without_alpha(const Image& image);
+
+}  // namespace pelage::cli
