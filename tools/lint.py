@@ -25,6 +25,7 @@ LAYERS = {
     "kernel": {"core", "kernel"},
     **{stage: {"core", "kernel", "frame", stage} for stage in STAGES},
     "frame": {"core", "kernel", "frame"} | STAGES,
+    "metrics": {"core", "io", "metrics"},
     "backend": {"core", "kernel", "frame", "backend"},
 }
 FRAME_HEADERS = {"core", "kernel", "frame"}

@@ -5,6 +5,7 @@
 #include <pelage/grow.h>
 #include <pelage/image.h>
 #include <pelage/io.h>
+#include <pelage/metrics.h>
 #include <pelage/progress.h>
 #include <pelage/render.h>
 #include <pelage/runtime.h>

@@ -30,4 +30,8 @@ struct RenderResult {
 /// any number of threads (see set_thread_count() in <pelage/runtime.h>).
 RenderResult render(const Scene& scene, const Progress& progress = {});
 
+/// `linear` (R, G, B, A; premultiplied) tone-mapped and sRGB-encoded, 0…1. Color is un-premultiplied for the curve and
+/// stays straight, as PNG wants it; alpha is copied. O(pixels).
+Image make_display(const Image& linear, ToneMap tone_map);
+
 }  // namespace pelage

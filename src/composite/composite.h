@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pelage/image.h>
+#include <pelage/render.h>  // make_display()
 #include <pelage/scene.h>
 
 #include "frame/frame.h"
@@ -25,9 +26,5 @@ struct FrameLayers {
 /// exposure applied). AlphaSource::kSamples averages the samples; kAnalytic lays the mean color of the visible strand
 /// samples over the opaque scene by the exact area of GBuffer::coverage. O(samples), rows in parallel.
 void resolve(const FrameLayers& layers, const RenderSettings& settings, int first_row, Image& linear);
-
-/// `linear` (R, G, B, A; premultiplied) tone-mapped and sRGB-encoded, 0…1. Color is un-premultiplied for the curve and
-/// stays straight, as PNG wants it; alpha is copied. O(pixels).
-Image make_display(const Image& linear, ToneMap tone_map);
 
 }  // namespace pelage
