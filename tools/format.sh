@@ -4,4 +4,4 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 mode=-i
 [ "${1:-}" = --check ] && mode="--dry-run --Werror"
-find include src apps bench tests \( -name '*.h' -o -name '*.cpp' \) -print0 | xargs -0 -n 40 -P "$(nproc)" clang-format $mode
+find include src apps bench tests \( -name '*.h' -o -name '*.cpp' \) -print0 | xargs -0 -n 40 -P "$(nproc)" "${CLANG_FORMAT:-clang-format}" $mode

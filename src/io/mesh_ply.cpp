@@ -31,10 +31,12 @@ std::optional<Type> type_of(std::string_view word) {
 enum class Role { kOther, kX, kY, kZ, kNx, kNy, kNz, kU, kV, kIndices };
 
 Role role_of(std::string_view name) {
+  // clang-format off
   constexpr std::pair<std::string_view, Role> kNames[] = {
       {"x", Role::kX}, {"y", Role::kY}, {"z", Role::kZ}, {"nx", Role::kNx}, {"ny", Role::kNy}, {"nz", Role::kNz},
       {"u", Role::kU}, {"v", Role::kV}, {"s", Role::kU}, {"t", Role::kV}, {"texture_u", Role::kU},
       {"texture_v", Role::kV}, {"vertex_indices", Role::kIndices}, {"vertex_index", Role::kIndices}};
+  // clang-format on
   for (const auto& [known, role] : kNames)
     if (known == name) return role;
   return Role::kOther;

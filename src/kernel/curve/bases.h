@@ -8,6 +8,7 @@ PELAGE_FN Vec4 curve_linear_derivative(Float t) {
   return Vec4(Float(0.0f), Float(-1.0f) + t * Float(0.0f), Float(1.0f), Float(0.0f));
 }
 
+// clang-format off: a line a control point
 PELAGE_FN Vec4 curve_catmull_rom_weights(Float t) {
   Float s = Float(1.0f) - t;
   return Vec4(Float(-0.5f) * t * s * s,
@@ -37,6 +38,7 @@ PELAGE_FN Vec4 curve_bspline_derivative(Float t) {
               Float(-1.0f) * s * (Float(1.5f) * s - Float(2.0f)),
               Float(0.5f) * t * t);
 }
+// clang-format on
 
 PELAGE_FN Vec4 curve_bezier_weights(Float t) {
   Float s = Float(1.0f) - t;

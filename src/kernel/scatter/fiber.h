@@ -150,6 +150,7 @@ PELAGE_FN ScatterLobes scatter_prepare_marschner(ScatterFiber f, Float sin_o, Fl
   s.front_r = Float(0.0f);
   s.tt = zero;
   s.trt = zero;
+  // clang-format off
   s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
                          Float(0.073686177f), Float(0.073619513f), Float(0.997286402f), Float(0.185576989f));
   s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
@@ -160,6 +161,7 @@ PELAGE_FN ScatterLobes scatter_prepare_marschner(ScatterFiber f, Float sin_o, Fl
                          Float(1.208310971f), Float(0.935018407f), Float(0.354599180f), Float(0.133298824f));
   s = scatter_add_offset(s, cos_o, f.eta, tau, inv_eta2, rho,
                          Float(1.497110150f), Float(0.997286402f), Float(0.073619513f), Float(0.013699262f));
+  // clang-format on
 
   ScatterLobes l;
   l.sin_o = sin_o;
