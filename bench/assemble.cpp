@@ -62,8 +62,7 @@ Workload workload(const std::string& groom, std::uint32_t parts) {
 void add_assemble_cases(Suite& suite) {
   for (const std::string& groom : groom_names()) {
     suite.cases.push_back({"assemble.points." + groom, "points_per_second", "1/s", [groom] { return workload(groom, 1); }});
-    suite.cases.push_back(
-        {"assemble.refined." + groom, "points_per_second", "1/s", [groom] { return workload(groom, 4); }});
+    suite.cases.push_back({"assemble.refined." + groom, "points_per_second", "1/s", [groom] { return workload(groom, 4); }});
   }
 }
 

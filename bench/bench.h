@@ -28,9 +28,9 @@ struct Workload {
 };
 
 struct Case {
-  std::string name;    ///< stage.case.input; stable, others rely on it
-  std::string metric;  ///< e.g. "segments_per_second", "seconds_per_frame", "mean_absolute_error"
-  std::string unit;    ///< "1/s", "s", "1", "B"
+  std::string name;                   ///< stage.case.input; stable, others rely on it
+  std::string metric;                 ///< e.g. "segments_per_second", "seconds_per_frame", "mean_absolute_error"
+  std::string unit;                   ///< "1/s", "s", "1", "B"
   std::function<Workload()> prepare;  ///< may throw Skip
 };
 
@@ -60,9 +60,9 @@ struct Skip {
 /// One line of the report.
 struct Result {
   std::string name, metric, unit;
-  double value = 0;   ///< median
-  double mad = 0;     ///< median absolute deviation from it
-  int runs = 0;       ///< after one warm-up
+  double value = 0;  ///< median
+  double mad = 0;    ///< median absolute deviation from it
+  int runs = 0;      ///< after one warm-up
   int threads = 0;
   std::string isa = {};
   bool checked = false;

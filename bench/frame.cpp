@@ -38,8 +38,10 @@ Workload frame_workload(const std::string& groom, View view) {
 
 void add_frame_cases(Suite& suite) {
   for (const std::string& groom : {std::string("straight50k"), std::string("curly50k"), std::string("sintel")}) {
-    suite.cases.push_back({"frame.beauty." + groom, "seconds_per_frame", "s", [groom] { return frame_workload(groom, View::kBeauty); }});
-    suite.cases.push_back({"frame.ids." + groom, "seconds_per_frame", "s", [groom] { return frame_workload(groom, View::kStrandId); }});
+    suite.cases.push_back(
+        {"frame.beauty." + groom, "seconds_per_frame", "s", [groom] { return frame_workload(groom, View::kBeauty); }});
+    suite.cases.push_back(
+        {"frame.ids." + groom, "seconds_per_frame", "s", [groom] { return frame_workload(groom, View::kStrandId); }});
   }
 }
 

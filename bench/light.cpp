@@ -112,14 +112,16 @@ void add_light_cases(Suite& suite) {
   for (const std::string& groom : groom_names()) {
     const std::string name = "light.opacity." + groom;
     suite.cases.push_back({name, "segments_per_second", "1/s", [groom] {
-      auto in = std::make_shared<Input>(groom);
-      return Workload{.check = [in] { return check(*in); }, .run = [in] { in->build(); }, .items = in->segments()};
-    }});
+                             auto in = std::make_shared<Input>(groom);
+                             return Workload{
+                                 .check = [in] { return check(*in); }, .run = [in] { in->build(); }, .items = in->segments()};
+                           }});
     suite.ratios.push_back({"light.opacity_scaling." + groom, {name, 2}, {name, 1}});
     suite.cases.push_back({"light.all." + groom, "seconds_per_frame", "s", [groom] {
-      auto in = std::make_shared<Input>(groom);
-      return Workload{.check = [in] { return check(*in); }, .run = [in] { prepare_lights(in->scene, MeshTracer({})); }};
-    }});
+                             auto in = std::make_shared<Input>(groom);
+                             return Workload{.check = [in] { return check(*in); },
+                                             .run = [in] { prepare_lights(in->scene, MeshTracer({})); }};
+                           }});
   }
 }
 

@@ -96,9 +96,8 @@ inline std::size_t naive_pixel(const CameraView& view, int x, int y) {
 inline void naive_center(const AssembleJob& job, Buffer<PixelKey>& keys) {
   const CameraView& view = job.view;
   naive_bands(job, [&](const kernel::RasterBand& band, std::uint32_t id) {
-    walk_centers(band, view.width, view.height, [&](int x, int y, float depth) {
-      atomic_min(keys[naive_pixel(view, x, y)], pixel_key(depth, id));
-    });
+    walk_centers(band, view.width, view.height,
+                 [&](int x, int y, float depth) { atomic_min(keys[naive_pixel(view, x, y)], pixel_key(depth, id)); });
   });
 }
 

@@ -23,10 +23,8 @@ struct Input {
   GBuffer out;
 
   explicit Input(const std::string& groom)
-      : scene(groom_scene(groom)),
-        view(make_camera_view(scene.camera, scene.settings.width, scene.settings.height)),
-        numbering(number_segments(scene, view)),
-        job(make_assemble_job(scene, view, numbering, 0)) {}
+      : scene(groom_scene(groom)), view(make_camera_view(scene.camera, scene.settings.width, scene.settings.height)),
+        numbering(number_segments(scene, view)), job(make_assemble_job(scene, view, numbering, 0)) {}
 
   double segments() const {
     const StrandSet& set = *job.strands;
@@ -92,8 +90,7 @@ std::string check_analytic(Input& in) {
   return std::fabs(analytic / exact - 1) > 0.01 ? fmt::format("mean coverage is off by {:.4f}", analytic / exact - 1) : "";
 }
 
-Workload layer_workload(const std::string& groom, const RasterLayers& layers,
-                        const std::function<std::string(Input&)>& check) {
+Workload layer_workload(const std::string& groom, const RasterLayers& layers, const std::function<std::string(Input&)>& check) {
   auto in = std::make_shared<Input>(groom);
   return {.check = [in, check] { return check(*in); }, .run = [in, layers] { in->fast(layers); }, .items = in->segments()};
 }
@@ -115,13 +112,10 @@ void add_raster_cases(Suite& suite) {
     add("msaa8." + groom, [groom] {
       return layer_workload(groom, {.center = false, .samples = 8}, [](Input& in) { return check_samples(in, 8); });
     });
-    add("analytic." + groom, [groom] {
-      return layer_workload(groom, {.center = false, .analytic = true}, check_analytic);
-    });
+    add("analytic." + groom, [groom] { return layer_workload(groom, {.center = false, .analytic = true}, check_analytic); });
     suite.ratios.push_back({"raster.speedup." + groom, {"raster.centre." + groom}, {"raster.naive." + groom}});
     suite.ratios.push_back({"raster.msaa8_share." + groom, {"raster.msaa8." + groom}, {"raster.centre." + groom}});
-    suite.ratios.push_back(
-        {"raster.scaling." + groom, {"raster.centre." + groom, 2}, {"raster.centre." + groom, 1}});
+    suite.ratios.push_back({"raster.scaling." + groom, {"raster.centre." + groom, 2}, {"raster.centre." + groom, 1}});
   }
 }
 

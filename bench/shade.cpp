@@ -109,7 +109,8 @@ struct Fibers {
     const ShadeBatch wide = batch;
     evaluate_scalar(constants, batch);
     for (std::size_t i = 0; i < batch.count; ++i)
-      if (!(wide.r[i] == batch.r[i] && wide.g[i] == batch.g[i] && wide.b[i] == batch.b[i])) return fmt::format("fiber {} differs", i);
+      if (!(wide.r[i] == batch.r[i] && wide.g[i] == batch.g[i] && wide.b[i] == batch.b[i]))
+        return fmt::format("fiber {} differs", i);
     return "";
   }
 };
@@ -117,10 +118,12 @@ struct Fibers {
 void add_groom_cases(Suite& suite, const std::string& groom) {
   const auto add = [&](const std::string& name, Evaluator evaluator) {
     suite.cases.push_back({name, "evaluations_per_second", "1/s", [groom, evaluator] {
-      const auto in = input(groom);
-      const double evaluations = static_cast<double>(in->run(evaluate).color.size());
-      return Workload{.check = [in] { return check(*in); }, .run = [in, evaluator] { in->run(evaluator); }, .items = evaluations};
-    }});
+                             const auto in = input(groom);
+                             const double evaluations = static_cast<double>(in->run(evaluate).color.size());
+                             return Workload{.check = [in] { return check(*in); },
+                                             .run = [in, evaluator] { in->run(evaluator); },
+                                             .items = evaluations};
+                           }});
   };
   const std::string wide = "shade.wide." + groom, scalar = "shade.scalar." + groom;
   add(wide, evaluate);
@@ -133,12 +136,14 @@ void add_groom_cases(Suite& suite, const std::string& groom) {
 void add_model_cases(Suite& suite, const Model& model) {
   const auto add = [&](const std::string& name, Evaluator evaluator) {
     suite.cases.push_back({name, "evaluations_per_second", "1/s", [model, evaluator] {
-      const auto fibers = std::make_shared<Fibers>(model);
-      return Workload{.check = [fibers] { return fibers->check(); }, .run = [fibers, evaluator] { fibers->run(evaluator); },
-                      .items = double{Fibers::kRepeats} * ShadeBatch::kSize};
-    }});
+                             const auto fibers = std::make_shared<Fibers>(model);
+                             return Workload{.check = [fibers] { return fibers->check(); },
+                                             .run = [fibers, evaluator] { fibers->run(evaluator); },
+                                             .items = double{Fibers::kRepeats} * ShadeBatch::kSize};
+                           }});
   };
-  const std::string wide = fmt::format("shade.bcsdf_wide.{}", model.name), scalar = fmt::format("shade.bcsdf_scalar.{}", model.name);
+  const std::string wide = fmt::format("shade.bcsdf_wide.{}", model.name),
+                    scalar = fmt::format("shade.bcsdf_scalar.{}", model.name);
   add(wide, evaluate);
   add(scalar, evaluate_scalar);
   suite.ratios.push_back({fmt::format("shade.bcsdf.{}", model.name), {wide}, {scalar}});

@@ -75,7 +75,8 @@ void add_bench(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("bench", "Check and time named cases");
   auto options = std::make_shared<BenchOptions>();
   verb->add_option("REGEX", options->pattern, "Part of the names of the cases to run; all without it");
-  verb->add_option("--json", options->json_path, "Write one JSON object a line to FILE; - for standard output")->type_name("FILE");
+  verb->add_option("--json", options->json_path, "Write one JSON object a line to FILE; - for standard output")
+      ->type_name("FILE");
   verb->add_flag("--list", options->list, "Name the cases and what they measure");
   add_machine_options(*verb);
   verb->footer(

@@ -94,7 +94,9 @@ void add_grow(CLI::App& app) {
   std::string styles;
   for (const std::string& name : hair_style_names()) styles += (styles.empty() ? "" : ", ") + name;
   verb->add_option("STYLE", options->style, "One of " + styles)->required();
-  verb->add_option("-o,--output", options->output, "Groom to write; the extension decides the format")->type_name("FILE")->required();
+  verb->add_option("-o,--output", options->output, "Groom to write; the extension decides the format")
+      ->type_name("FILE")
+      ->required();
   verb->add_option("--mesh", options->mesh, "Surface to grow on instead of the mannequin's scalp")->type_name("FILE");
   verb->add_option("--mesh-scale", options->mesh_scale, "Meters per unit of the mesh")->type_name("X");
   verb->add_option("--mesh-up", options->mesh_up, "Axis of the mesh that points up")
@@ -103,11 +105,12 @@ void add_grow(CLI::App& app) {
   verb->add_option("--write-mesh", options->head_output, "Also write the surface, in meters, to FILE")->type_name("FILE");
   add_settings(*verb, options);
   add_machine_options(*verb);
-  verb->footer("Settings that are not given come from the style.\n\n"
-               "Examples:\n"
-               "  pelage grow curly -o curly.pelage\n"
-               "  pelage grow straight --strands 100000 --length 0.4 --seed 7 -o long.pelage --write-mesh head.obj\n"
-               "  pelage grow coat --mesh spot.obj --strands 200000 -o spot.pelage");
+  verb->footer(
+      "Settings that are not given come from the style.\n\n"
+      "Examples:\n"
+      "  pelage grow curly -o curly.pelage\n"
+      "  pelage grow straight --strands 100000 --length 0.4 --seed 7 -o long.pelage --write-mesh head.obj\n"
+      "  pelage grow coat --mesh spot.obj --strands 200000 -o spot.pelage");
   verb->callback([options] { grow_verb(*options); });
 }
 

@@ -15,7 +15,8 @@ void add_import_options(CLI::App& verb, ImportOptions& options) {
   verb.add_option_function<std::string>("--up", set_up, "Axis of the file that points up: y, z or auto")
       ->transform(CLI::IsMember({"auto", "y", "z"}, CLI::ignore_case))
       ->type_name("AXIS");
-  verb.add_option("--width", options.default_width, "Meters, diameter of strands whose file has no widths; guessed if not given")
+  verb.add_option("--width", options.default_width,
+                  "Meters, diameter of strands whose file has no widths; guessed if not given")
       ->check(CLI::PositiveNumber)
       ->type_name("M");
 }

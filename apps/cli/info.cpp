@@ -129,10 +129,14 @@ Json groom_info(const std::string& path, const ImportOptions& options) {
 Json mesh_info(const std::string& path, const ImportOptions& options, const std::string& format) {
   const float scale = options.scale > 0 ? options.scale : 1;
   const TriangleMesh mesh = read_mesh(path, scale, options.up == UpAxis::kZ ? UpAxis::kZ : UpAxis::kY);
-  return {{"kind", "mesh"},           {"format", format},
-          {"triangles", mesh.triangles.size()}, {"vertices", mesh.positions.size()},
-          {"uv", !mesh.uv.empty()},   {"bounds", to_json(bounds(mesh))},
-          {"scale", scale},           {"up", up_name(options.up)}};
+  return {{"kind", "mesh"},
+          {"format", format},
+          {"triangles", mesh.triangles.size()},
+          {"vertices", mesh.positions.size()},
+          {"uv", !mesh.uv.empty()},
+          {"bounds", to_json(bounds(mesh))},
+          {"scale", scale},
+          {"up", up_name(options.up)}};
 }
 
 Json image_info(const std::string& path, const std::string& format) {
@@ -143,8 +147,9 @@ Json image_info(const std::string& path, const std::string& format) {
     non_finite += !std::isfinite(x);
     if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
   }
-  return {{"kind", "image"},  {"format", format}, {"width", image.width},  {"height", image.height},
-          {"channels", image.channels}, {"min", least}, {"max", most}, {"non_finite", non_finite}};
+  return {
+      {"kind", "image"}, {"format", format}, {"width", image.width},    {"height", image.height}, {"channels", image.channels},
+      {"min", least},    {"max", most},      {"non_finite", non_finite}};
 }
 
 Json info(const std::string& path, const ImportOptions& options) {
@@ -188,9 +193,9 @@ std::string spread_text(const Json& spread) {
 
 std::string bounds_text(const Json& box) {
   const auto lower = box["lower"].get<std::array<double, 3>>(), upper = box["upper"].get<std::array<double, 3>>();
-  return fmt::format("{} × {} × {}  from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})",
-                     metric(upper[0] - lower[0]), metric(upper[1] - lower[1]), metric(upper[2] - lower[2]), lower[0],
-                     lower[1], lower[2], upper[0], upper[1], upper[2]);
+  return fmt::format("{} × {} × {}  from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", metric(upper[0] - lower[0]),
+                     metric(upper[1] - lower[1]), metric(upper[2] - lower[2]), lower[0], lower[1], lower[2], upper[0], upper[1],
+                     upper[2]);
 }
 
 void print_groom(const Json& json) {
@@ -249,10 +254,8 @@ struct Options {
 void run(const Options& options) {
   for (const std::string& file : options.files) {
     const Json json = info(file, options.import);
-    if (options.json)
-      fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
-    else
-      print(json);
+    if (options.json) fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    else print(json);
   }
 }
 

@@ -111,11 +111,12 @@ int run(int argc, char** argv) {
 }  // namespace
 
 void add_machine_options(CLI::App& verb) {
-  verb.add_option_function<int>("--threads", [](int n) { set_thread_count(n); }, "Threads to use; 0 one per core")
+  verb.add_option_function<int>(
+          "--threads", [](int n) { set_thread_count(n); }, "Threads to use; 0 one per core")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
-  verb.add_option_function<std::string>("--isa", [](const std::string& isa) { set_isa(isa); },
-                                        "Instruction set to use instead of the best")
+  verb.add_option_function<std::string>(
+          "--isa", [](const std::string& isa) { set_isa(isa); }, "Instruction set to use instead of the best")
       ->check(CLI::IsMember(available_isas()));
 }
 

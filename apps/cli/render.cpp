@@ -23,8 +23,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 // Appends the channels of other views of the same scene: their own passes, without light.
 void append_layers(const Scene& scene, const std::vector<std::string>& layers, const Progress& progress, Image& image) {
   static const std::vector<std::pair<std::string, View>> kLayers{
-      {"Z", View::kDepth}, {"coverage", View::kCoverage}, {"id", View::kStrandId}, {"u", View::kU},
-      {"tangent", View::kTangent}, {"albedo", View::kAlbedo}, {"overdraw", View::kOverdraw}};
+      {"Z", View::kDepth},         {"coverage", View::kCoverage}, {"id", View::kStrandId},      {"u", View::kU},
+      {"tangent", View::kTangent}, {"albedo", View::kAlbedo},     {"overdraw", View::kOverdraw}};
   for (const std::string& name : layers) {
     const auto layer = std::find_if(kLayers.begin(), kLayers.end(), [&](const auto& l) { return l.first == name; });
     Scene pass = scene;
@@ -96,7 +96,9 @@ void add_render(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("render", "Render a groom or a scene file");
   auto o = std::make_shared<RenderOptions>();
   verb->add_option("INPUT", o->input, "Groom file, or scene file (JSON)")->type_name("FILE");
-  verb->add_option("-o,--output", o->outputs, "Picture to write: .exr, .png or .hdr; may be repeated")->type_name("FILE")->allow_extra_args(false);
+  verb->add_option("-o,--output", o->outputs, "Picture to write: .exr, .png or .hdr; may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   add_scene_options(*verb, *o);
   add_picture_options(*verb, *o);
   verb->add_flag("--stats", o->stats, "Print time and memory of every stage");

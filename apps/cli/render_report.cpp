@@ -60,7 +60,8 @@ void print_json(const Scene& scene, const RenderResult& result, const std::vecto
   j["bytes_per_point"] = bytes_per_point(scene, result);
   j["hash"] = fmt::format("{:016x}", hash_bytes(result.linear.pixels.data(), result.linear.pixels.size() * sizeof(float)));
   for (const StageStat& s : result.stats)
-    j["stages"].push_back({{"stage", s.stage}, {"seconds", s.seconds}, {"bytes", s.bytes}, {"items", s.items}, {"unit", s.unit}});
+    j["stages"].push_back(
+        {{"stage", s.stage}, {"seconds", s.seconds}, {"bytes", s.bytes}, {"items", s.items}, {"unit", s.unit}});
   fmt::print("{}\n", j.dump(2));
 }
 

@@ -60,7 +60,8 @@ Light parse_light(const std::string& text) {
   if (second == std::string::npos)
     throw UsageError("--light", text, "not understood", "directional:DX,DY,DZ:R,G,B or point:X,Y,Z:R,G,B");
   Light light;
-  light.type = by_name<Light::Type>("--light", text.substr(0, first), {{"directional", Light::Type::kDirectional}, {"point", Light::Type::kPoint}});
+  light.type = by_name<Light::Type>("--light", text.substr(0, first),
+                                    {{"directional", Light::Type::kDirectional}, {"point", Light::Type::kPoint}});
   const Vec3 place = vector("--light", text.substr(first + 1, second - first - 1));
   light.intensity = vector("--light", text.substr(second + 1));
   if (light.type == Light::Type::kPoint) light.position = place;
@@ -93,12 +94,21 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
       throw UsageError("--size", *o.size, "out of range", "from 1x1 to 16384x16384");
   }
   if (o.samples) s.samples = *o.samples;
-  if (o.alpha) s.alpha = by_name<AlphaSource>("--alpha", *o.alpha, {{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}});
+  if (o.alpha)
+    s.alpha =
+        by_name<AlphaSource>("--alpha", *o.alpha, {{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}});
   if (o.view)
-    s.view = by_name<View>("--view", *o.view, {{"beauty", View::kBeauty}, {"strand-id", View::kStrandId}, {"u", View::kU},
-                                               {"tangent", View::kTangent}, {"depth", View::kDepth}, {"coverage", View::kCoverage},
-                                               {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo}});
-  if (o.tone_map) s.tone_map = by_name<ToneMap>("--tone-map", *o.tone_map, {{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
+    s.view = by_name<View>("--view", *o.view,
+                           {{"beauty", View::kBeauty},
+                            {"strand-id", View::kStrandId},
+                            {"u", View::kU},
+                            {"tangent", View::kTangent},
+                            {"depth", View::kDepth},
+                            {"coverage", View::kCoverage},
+                            {"overdraw", View::kOverdraw},
+                            {"albedo", View::kAlbedo}});
+  if (o.tone_map)
+    s.tone_map = by_name<ToneMap>("--tone-map", *o.tone_map, {{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
   if (o.exposure) s.exposure = *o.exposure;
   if (o.subdivisions) s.subdivisions = *o.subdivisions;
   if (o.opacity_map_size) s.opacity_map_size = *o.opacity_map_size;
@@ -111,15 +121,22 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
 void apply_material(const RenderOptions& o, HairMaterial& m) {
   using Source = HairMaterial::ColorSource;
   if (o.model)
-    m.model = by_name<HairMaterial::Model>("--model", *o.model, {{"kajiya-kay", HairMaterial::Model::kKajiyaKay},
-                                                                 {"marschner", HairMaterial::Model::kMarschner},
-                                                                 {"zhu", HairMaterial::Model::kZhu}});
+    m.model = by_name<HairMaterial::Model>("--model", *o.model,
+                                           {{"kajiya-kay", HairMaterial::Model::kKajiyaKay},
+                                            {"marschner", HairMaterial::Model::kMarschner},
+                                            {"zhu", HairMaterial::Model::kZhu}});
   if (o.hair) {
-    const Vec2 melanin = by_name<Vec2>("--hair", *o.hair, {{"black", {8, 0}}, {"brown", {1.3f, 0.2f}}, {"light-brown", {0.5f, 0.2f}},
-                                                           {"blond", {0.12f, 0.12f}}, {"red", {0.25f, 1.3f}}, {"white", {0.01f, 0}}});
+    const Vec2 melanin = by_name<Vec2>("--hair", *o.hair,
+                                       {{"black", {8, 0}},
+                                        {"brown", {1.3f, 0.2f}},
+                                        {"light-brown", {0.5f, 0.2f}},
+                                        {"blond", {0.12f, 0.12f}},
+                                        {"red", {0.25f, 1.3f}},
+                                        {"white", {0.01f, 0}}});
     m.eumelanin = melanin.x, m.pheomelanin = melanin.y, m.color_source = Source::kMelanin;
   }
-  if (!o.melanin.empty()) m.eumelanin = o.melanin[0], m.pheomelanin = o.melanin.size() > 1 ? o.melanin[1] : 0, m.color_source = Source::kMelanin;
+  if (!o.melanin.empty())
+    m.eumelanin = o.melanin[0], m.pheomelanin = o.melanin.size() > 1 ? o.melanin[1] : 0, m.color_source = Source::kMelanin;
   if (!o.color.empty()) m.color = vector(o.color), m.color_source = Source::kRgb;
 }
 

@@ -14,8 +14,11 @@ void add_display_options(CLI::App& verb, RenderOptions& o) {
 }
 
 void add_world_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")->type_name("FILE")->allow_extra_args(false);
-  verb.add_flag("--no-head", o.no_head, "Leave away the mannequin, which shows below hair that was grown on it when no --mesh is given");
+  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  verb.add_flag("--no-head", o.no_head,
+                "Leave away the mannequin, which shows below hair that was grown on it when no --mesh is given");
   add_import_options(verb, o.import);
   verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");
   verb.add_option("--target", o.target, "What it looks at")->delimiter(',')->expected(3)->type_name("X,Y,Z");
@@ -23,7 +26,8 @@ void add_world_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--turn", o.turn, "Takes the camera around the target, degrees")->check(CLI::Range(-3600.0, 3600.0));
   verb.add_flag("--ortho", o.orthographic, "Orthographic camera");
   verb.add_option("--light", o.lights, "directional:DX,DY,DZ:R,G,B or point:X,Y,Z:R,G,B; replaces the lights; may be repeated")
-      ->type_name("LIGHT")->allow_extra_args(false);
+      ->type_name("LIGHT")
+      ->allow_extra_args(false);
   verb.add_option("--env", o.environment, "Latitude-longitude image that lights the scene")->type_name("FILE");
   verb.add_option("--env-rotation", o.environment_rotation, "Degrees about +Y")->check(CLI::Range(-3600.0, 3600.0));
   verb.add_flag("--env-visible", o.environment_visible, "Show the environment behind the scene");
@@ -32,8 +36,16 @@ void add_world_options(CLI::App& verb, RenderOptions& o) {
 
 void add_hair_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--hair", o.hair, "black, brown, light-brown, blond, red or white")->type_name("NAME");
-  verb.add_option("--color", o.color, "Linear color of a dense tuft, 0…1")->delimiter(',')->expected(3)->type_name("R,G,B")->check(CLI::Range(0.0, 1.0));
-  verb.add_option("--melanin", o.melanin, "Eumelanin and pheomelanin")->delimiter(',')->expected(1, 2)->type_name("E[,P]")->check(CLI::Range(0.0, 100.0));
+  verb.add_option("--color", o.color, "Linear color of a dense tuft, 0…1")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("R,G,B")
+      ->check(CLI::Range(0.0, 1.0));
+  verb.add_option("--melanin", o.melanin, "Eumelanin and pheomelanin")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->type_name("E[,P]")
+      ->check(CLI::Range(0.0, 100.0));
   verb.add_option("--model", o.model, "Fiber scattering: kajiya-kay, marschner, zhu")->type_name("NAME");
   verb.add_option("--width-scale", o.width_scale, "Multiplies every width")->check(CLI::PositiveNumber);
 }

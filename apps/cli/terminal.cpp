@@ -36,7 +36,8 @@ std::string duration_text(double seconds) {
 
 int interrupted_by() { return g_signal; }
 
-ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), stage_start_(start_), drawn_(start_) {
+ProgressLine::ProgressLine()
+    : terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), stage_start_(start_), drawn_(start_) {
   install_handlers();
 }
 

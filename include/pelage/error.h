@@ -14,11 +14,8 @@ namespace pelage {
 class Error : public std::runtime_error {
  public:
   Error(std::string where, std::string place, std::string problem, std::string remedy)
-      : std::runtime_error(join(where, place, problem, remedy)),
-        where_(std::move(where)),
-        place_(std::move(place)),
-        problem_(std::move(problem)),
-        remedy_(std::move(remedy)) {}
+      : std::runtime_error(join(where, place, problem, remedy)), where_(std::move(where)), place_(std::move(place)),
+        problem_(std::move(problem)), remedy_(std::move(remedy)) {}
 
   const std::string& where() const { return where_; }      ///< file, option or object; never empty
   const std::string& place() const { return place_; }      ///< byte, line, strand or key inside it; may be empty

@@ -27,14 +27,14 @@ struct GrowSettings {
   float taper = 0.7f;              ///< share of the width that is gone at the tip, 0…1
   float curl_radius = 0;           ///< mean radius of the helix (curly, afro) or amplitude of the wave, metres, 0…1; 0 none
   float curl_pitch = 0.03f;        ///< mean distance along a lock in which it turns once, metres, 0.0001…10
-  int clumps = 800;                ///< number of locks, each with a guide, 0…1,000,000; 0 none (a few guides still shape the whole)
-  float clump_tightness = 0.5f;    ///< 0 none … 1 tips meet
-  float frizz = 0.3f;              ///< small-scale noise, 0 combed … 1 unruly
-  float flyaways = 0.02f;          ///< share of strands that leave their lock, 0…1
-  float gravity = 1;               ///< 0 stands, 1 hangs
-  float volume = 0.014f;           ///< distance from the skin to which hair of the crown piles up, metres, 0…0.5
-  float parting = 0.018f;          ///< where the parting runs on the mannequin, metres left of the middle, −0.05…0.05
-  float undercoat = 0.65f;         ///< coat: share of short, fine, wavy wool between the guard hairs, 0…1
+  int clumps = 800;  ///< number of locks, each with a guide, 0…1,000,000; 0 none (a few guides still shape the whole)
+  float clump_tightness = 0.5f;  ///< 0 none … 1 tips meet
+  float frizz = 0.3f;            ///< small-scale noise, 0 combed … 1 unruly
+  float flyaways = 0.02f;        ///< share of strands that leave their lock, 0…1
+  float gravity = 1;             ///< 0 stands, 1 hangs
+  float volume = 0.014f;         ///< distance from the skin to which hair of the crown piles up, metres, 0…0.5
+  float parting = 0.018f;        ///< where the parting runs on the mannequin, metres left of the middle, −0.05…0.05
+  float undercoat = 0.65f;       ///< coat: share of short, fine, wavy wool between the guard hairs, 0…1
 };
 
 /// Values of StrandSet::group that grow() gives.

@@ -9,9 +9,9 @@ namespace pelage {
 
 /// Interleaved float channels, row 0 on top, scene-linear unless its producer says otherwise.
 struct Image {
-  int width = 0, height = 0;            ///< pixels
-  std::vector<std::string> channels;    ///< names in storage order: {"R","G","B","A"}, {"Z"}, …
-  std::vector<float> pixels;            ///< [height·width·channels.size()]
+  int width = 0, height = 0;          ///< pixels
+  std::vector<std::string> channels;  ///< names in storage order: {"R","G","B","A"}, {"Z"}, …
+  std::vector<float> pixels;          ///< [height·width·channels.size()]
 
   Image() = default;
   Image(int w, int h, std::vector<std::string> names)
@@ -23,8 +23,7 @@ struct Image {
 
  private:
   std::size_t index(int x, int y) const {
-    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
-           channels.size();
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * channels.size();
   }
 };
 

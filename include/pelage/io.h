@@ -15,16 +15,16 @@ namespace pelage {
 enum class UpAxis { kAuto, kY, kZ };
 
 struct ImportOptions {
-  float scale = 0;               ///< metres per file unit; 0 guesses (see ImportReport)
-  UpAxis up = UpAxis::kAuto;     ///< which file axis points up
-  float default_width = 0;       ///< metres, for files without widths; 0 guesses: 80 µm, more for sparse grooms (0.8 mm at most)
+  float scale = 0;            ///< metres per file unit; 0 guesses (see ImportReport)
+  UpAxis up = UpAxis::kAuto;  ///< which file axis points up
+  float default_width = 0;    ///< metres, for files without widths; 0 guesses: 80 µm, more for sparse grooms (0.8 mm at most)
 };
 
 /// What the reader assumed, and what it repaired: printed by `pelage info`.
 struct ImportReport {
-  std::string format;            ///< registered name, e.g. "cyhair"
-  float scale = 1;               ///< metres per file unit that was applied
-  UpAxis up = UpAxis::kY;        ///< that was applied
+  std::string format;      ///< registered name, e.g. "cyhair"
+  float scale = 1;         ///< metres per file unit that was applied
+  UpAxis up = UpAxis::kY;  ///< that was applied
   bool scale_guessed = false, up_guessed = false, width_guessed = false;
   RepairReport repairs;
   std::vector<std::string> notes;  ///< one sentence each, for people

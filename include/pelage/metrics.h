@@ -62,43 +62,43 @@ struct PixelSet {
 };
 
 struct CompareOptions {
-  std::vector<std::string> metrics;   ///< keys of registered metrics; empty: all that the pair allows
+  std::vector<std::string> metrics;  ///< keys of registered metrics; empty: all that the pair allows
   /// Set: both pictures are compared as a display shows them, scene-linear ones after this curve and sRGB encoding, as
   /// `render` writes PNG. Not set: two scene-linear pictures are compared as they are; a mixed pair as with kAces.
   std::optional<ToneMap> tone_map;
-  PixelMask mask;                     ///< values are taken over these pixels; hair_mask(reference) as the papers do
-  std::vector<Region> regions;        ///< values are also taken over each of these, within the mask
-  std::vector<std::string> maps;      ///< keys of metrics whose errors per pixel are wanted
-  float pixels_per_degree = 67;       ///< FLIP's distance to the screen: 0.7 m from a 0.7 m wide screen of 3840 pixels
+  PixelMask mask;                 ///< values are taken over these pixels; hair_mask(reference) as the papers do
+  std::vector<Region> regions;    ///< values are also taken over each of these, within the mask
+  std::vector<std::string> maps;  ///< keys of metrics whose errors per pixel are wanted
+  float pixels_per_degree = 67;   ///< FLIP's distance to the screen: 0.7 m from a 0.7 m wide screen of 3840 pixels
   /// HDR-FLIP's first and last exposure in stops, and their number; not set: found from the reference.
   std::optional<float> start_exposure, stop_exposure;
-  int exposures = 0;                  ///< 0: found
+  int exposures = 0;  ///< 0: found
   Progress progress;
 };
 
 struct MetricValue {
-  std::string key;               ///< e.g. "psnr"
-  std::optional<double> value;   ///< none where it is infinite or where the pixels allow none; `note` says which
+  std::string key;              ///< e.g. "psnr"
+  std::optional<double> value;  ///< none where it is infinite or where the pixels allow none; `note` says which
   std::string note = {};
 };
 struct RegionValues {
   std::string name;
   PixelRect rect;
-  std::size_t pixels = 0;        ///< that were counted
+  std::size_t pixels = 0;  ///< that were counted
   std::vector<MetricValue> values;
 };
 struct ErrorMap {
-  std::string key;               ///< of its metric
-  Image error;                   ///< one channel `error`, 0 where the pictures agree
+  std::string key;  ///< of its metric
+  Image error;      ///< one channel `error`, 0 where the pictures agree
 };
 struct Comparison {
   Encoding domain = Encoding::kLinear;  ///< in which the pictures were compared
   int width = 0, height = 0;
-  std::size_t pixels = 0;               ///< that were counted
-  std::vector<MetricValue> values;      ///< in the order of the registry
-  std::vector<RegionValues> regions;    ///< in the order of the options
-  std::vector<ErrorMap> maps;           ///< in the order of the options
-  std::vector<std::string> warnings;    ///< one sentence each, for people
+  std::size_t pixels = 0;             ///< that were counted
+  std::vector<MetricValue> values;    ///< in the order of the registry
+  std::vector<RegionValues> regions;  ///< in the order of the options
+  std::vector<ErrorMap> maps;         ///< in the order of the options
+  std::vector<std::string> warnings;  ///< one sentence each, for people
 
   /// The value of metric `key`; none where it was not computed or has none.
   std::optional<double> value(const std::string& key) const;
@@ -115,7 +115,7 @@ struct SequenceComparison {
   std::vector<MetricValue> mean;  ///< of each metric over the frames that have it
   /// PSNR of each frame against the next, of the test and of the reference: size frames − 1; none: equal.
   std::vector<std::optional<double>> adjacent_psnr, reference_adjacent_psnr;
-  std::vector<double> flicker;    ///< mean |(t[i+1] − t[i]) − (r[i+1] − r[i])|, size frames − 1
+  std::vector<double> flicker;        ///< mean |(t[i+1] − t[i]) − (r[i+1] − r[i])|, size frames − 1
   std::vector<MetricValue> temporal;  ///< adjacent_psnr, adjacent_psnr_min, …, flicker over the whole sequence
 };
 /// As compare_images(), frame by frame; holds two frames of each sequence in memory. `read` gives frame i of a sequence;
@@ -142,7 +142,7 @@ struct MetricInput {
   const Image& test;
   const Image& reference;
   Encoding domain = Encoding::kLinear;
-  const std::vector<float>* test_coverage = nullptr;       ///< one per pixel, where the picture has it
+  const std::vector<float>* test_coverage = nullptr;  ///< one per pixel, where the picture has it
   const std::vector<float>* reference_coverage = nullptr;
   const CompareOptions& options;
 };
@@ -151,7 +151,7 @@ struct Metric {
   std::string description;  ///< one line for people
   bool higher_is_better = false;
   bool has_map = true;
-  float map_scale = 0;      ///< the error at which its map's colors end; 0: the map decides
+  float map_scale = 0;  ///< the error at which its map's colors end; 0: the map decides
   /// Why the metric cannot be had for a pair, "" where it can. Not set: it always can.
   std::function<std::string(const MetricInput&)> unavailable;
   std::function<MetricResult(const MetricInput&)> evaluate;

@@ -13,11 +13,11 @@ namespace pelage {
 
 /// One row of `--stats`: a stage by the name it has everywhere (folder, profiler, benchmark).
 struct StageStat {
-  std::string stage;         ///< e.g. "raster"
-  double seconds = 0;        ///< wall time
-  std::uint64_t bytes = 0;   ///< memory that the stage's results hold
-  std::uint64_t items = 0;   ///< what it worked on …
-  std::string unit;          ///< … and what that is: "segments", "samples", …
+  std::string stage;        ///< e.g. "raster"
+  double seconds = 0;       ///< wall time
+  std::uint64_t bytes = 0;  ///< memory that the stage's results hold
+  std::uint64_t items = 0;  ///< what it worked on …
+  std::string unit;         ///< … and what that is: "segments", "samples", …
 };
 
 struct RenderResult {

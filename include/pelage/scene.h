@@ -26,11 +26,11 @@ struct Light {
   enum class Type { kPoint, kSpot, kDirectional };
   Type type = Type::kDirectional;
   std::string name;
-  Vec3 position{0, 0, 0};      ///< point and spot: metres
-  Vec3 direction{0, -1, 0};    ///< spot and directional: where the light travels; unit length
-  Vec3 intensity{1, 1, 1};     ///< point and spot: radiant intensity, W/sr; directional: irradiance, W/m²; RGB
-  float inner_angle = 0.3f;    ///< spot: radians from the axis up to which it is full
-  float outer_angle = 0.4f;    ///< spot: radians from the axis from which it is dark; > inner_angle
+  Vec3 position{0, 0, 0};    ///< point and spot: metres
+  Vec3 direction{0, -1, 0};  ///< spot and directional: where the light travels; unit length
+  Vec3 intensity{1, 1, 1};   ///< point and spot: radiant intensity, W/sr; directional: irradiance, W/m²; RGB
+  float inner_angle = 0.3f;  ///< spot: radians from the axis up to which it is full
+  float outer_angle = 0.4f;  ///< spot: radians from the axis from which it is dark; > inner_angle
   bool casts_shadow = true;
 };
 
@@ -48,22 +48,22 @@ struct HairMaterial {
   enum class ColorSource { kMelanin, kRgb, kStrand };
   Model model = Model::kMarschner;
   ColorSource color_source = ColorSource::kMelanin;
-  float eumelanin = 1.3f;         ///< concentration, ≥ 0; 0.1 blond, 0.5 light brown, 1.3 brown, 8 black
-  float pheomelanin = 0.2f;       ///< concentration, ≥ 0; red hair 1 and more
-  Vec3 color{0.3f, 0.15f, 0.07f}; ///< linear colour of a dense tuft, 0…1, for kRgb (and where strands have none)
-  float eta = 1.55f;              ///< index of refraction, > 1
+  float eumelanin = 1.3f;          ///< concentration, ≥ 0; 0.1 blond, 0.5 light brown, 1.3 brown, 8 black
+  float pheomelanin = 0.2f;        ///< concentration, ≥ 0; red hair 1 and more
+  Vec3 color{0.3f, 0.15f, 0.07f};  ///< linear colour of a dense tuft, 0…1, for kRgb (and where strands have none)
+  float eta = 1.55f;               ///< index of refraction, > 1
   float beta_longitudinal = 7.5f * 3.14159265f / 180;  ///< radians, standard deviation of M_R; TT half, TRT twice of it
   float beta_azimuthal = 15.f * 3.14159265f / 180;     ///< radians, standard deviation of N_TT
-  float cuticle_tilt = 3.f * 3.14159265f / 180;        ///< radians, α ≥ 0; R shifts by −2α in θ_i + θ_o terms toward the root
-  float specular_gain = 1;        ///< multiplies R; 1 is physical
+  float cuticle_tilt = 3.f * 3.14159265f / 180;  ///< radians, α ≥ 0; R shifts by −2α in θ_i + θ_o terms toward the root
+  float specular_gain = 1;                       ///< multiplies R; 1 is physical
 };
 
 struct GroomInstance {
   std::string name;
   std::shared_ptr<const StrandSet> strands;
   HairMaterial material;
-  Affine transform;         ///< object to world; similarity (rotation, translation, one scale)
-  float width_scale = 1;    ///< multiplies every width
+  Affine transform;       ///< object to world; similarity (rotation, translation, one scale)
+  float width_scale = 1;  ///< multiplies every width
 };
 
 struct MeshInstance {
@@ -88,18 +88,18 @@ enum class AlphaSource {
 enum class ToneMap { kAces, kNone };
 
 struct RenderSettings {
-  int width = 1024, height = 1024;                 ///< pixels, 1…16384
-  int samples = 8;                                 ///< per pixel: 1, 2, 4, 8 or 16
+  int width = 1024, height = 1024;  ///< pixels, 1…16384
+  int samples = 8;                  ///< per pixel: 1, 2, 4, 8 or 16
   AlphaSource alpha = AlphaSource::kSamples;
   View view = View::kBeauty;
-  float exposure = 0;                              ///< stops
+  float exposure = 0;  ///< stops
   ToneMap tone_map = ToneMap::kAces;
-  Vec3 background{0.18f, 0.19f, 0.21f};            ///< linear, where nothing is hit and the environment is hidden
-  bool transparent_background = false;             ///< keep alpha instead of the background
-  int subdivisions = 0;                            ///< segments per span; 0 chooses from the projected curvature
+  Vec3 background{0.18f, 0.19f, 0.21f};  ///< linear, where nothing is hit and the environment is hidden
+  bool transparent_background = false;   ///< keep alpha instead of the background
+  int subdivisions = 0;                  ///< segments per span; 0 chooses from the projected curvature
   bool shadows = true;
-  bool dual_scattering = true;                     ///< multiple scattering after Zinke 2008
-  int opacity_map_size = 1024;                     ///< texels a side, 64…4096
+  bool dual_scattering = true;  ///< multiple scattering after Zinke 2008
+  int opacity_map_size = 1024;  ///< texels a side, 64…4096
 };
 
 struct Scene {

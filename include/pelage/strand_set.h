@@ -19,17 +19,17 @@ enum class CurveBasis : std::uint8_t { kLinear, kCatmullRom, kBSpline, kBezier }
 /// Invariants (checked by validate(); every reader and generator establishes them):
 /// all numbers are finite, every strand has at least two points, optional arrays are empty or of the stated size.
 struct StrandSet {
-  std::vector<Vec3> points;             ///< [point_count] control points, metres
-  std::vector<std::uint32_t> offsets;   ///< [strand_count + 1] non-decreasing; first is 0, last equals point_count
-  std::vector<float> widths;            ///< [point_count], or [1] for one width throughout; diameters, metres, ≥ 0
-  std::vector<Vec3> colors;             ///< [0] or [strand_count] or [point_count]; linear reflectance, 0…1
-  std::vector<float> transparency;      ///< [0] or [point_count]; 0 opaque … 1 invisible
-  std::vector<Vec2> root_uv;            ///< [0] or [strand_count]; texture coordinate of the root on the scalp
-  std::vector<std::uint32_t> strand_id; ///< [0] (then the index) or [strand_count]; survives thinning and sorting
-  std::vector<std::int32_t> guide_id;   ///< [0] or [strand_count]; strand_id of the strand's guide, −1 for none
-  std::vector<std::uint16_t> group;     ///< [0] or [strand_count]; user's group (scalp, brows, …)
+  std::vector<Vec3> points;              ///< [point_count] control points, metres
+  std::vector<std::uint32_t> offsets;    ///< [strand_count + 1] non-decreasing; first is 0, last equals point_count
+  std::vector<float> widths;             ///< [point_count], or [1] for one width throughout; diameters, metres, ≥ 0
+  std::vector<Vec3> colors;              ///< [0] or [strand_count] or [point_count]; linear reflectance, 0…1
+  std::vector<float> transparency;       ///< [0] or [point_count]; 0 opaque … 1 invisible
+  std::vector<Vec2> root_uv;             ///< [0] or [strand_count]; texture coordinate of the root on the scalp
+  std::vector<std::uint32_t> strand_id;  ///< [0] (then the index) or [strand_count]; survives thinning and sorting
+  std::vector<std::int32_t> guide_id;    ///< [0] or [strand_count]; strand_id of the strand's guide, −1 for none
+  std::vector<std::uint16_t> group;      ///< [0] or [strand_count]; user's group (scalp, brows, …)
   CurveBasis basis = CurveBasis::kCatmullRom;
-  std::string comment;                  ///< free text that travels with the groom; UTF-8
+  std::string comment;  ///< free text that travels with the groom; UTF-8
 
   std::size_t point_count() const { return points.size(); }
   std::size_t strand_count() const { return offsets.empty() ? 0 : offsets.size() - 1; }

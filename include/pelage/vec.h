@@ -44,9 +44,7 @@ inline constexpr Vec3& operator*=(Vec3& a, float s) { return a = a * s; }
 
 inline constexpr float dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 inline constexpr float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline constexpr Vec3 cross(Vec3 a, Vec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+inline constexpr Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 inline float length(Vec2 a) { return std::sqrt(dot(a, a)); }
 inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
 /// Unit vector along `a`; the zero vector stays zero (callers that cannot have one test before).

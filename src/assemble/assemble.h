@@ -25,13 +25,12 @@ inline constexpr std::uint32_t kMaxSubdivisions = 16;
 struct AssembleJob {
   const StrandSet* strands = nullptr;
   CameraView view;
-  Affine to_camera;               ///< object → camera
-  float width_scale = 1;          ///< camera-space diameter per stored width
-  std::uint32_t subdivisions = 1; ///< segments per span
-  std::uint32_t base_id = 0;      ///< id of the groom's first segment
+  Affine to_camera;                ///< object → camera
+  float width_scale = 1;           ///< camera-space diameter per stored width
+  std::uint32_t subdivisions = 1;  ///< segments per span
+  std::uint32_t base_id = 0;       ///< id of the groom's first segment
 };
-AssembleJob make_assemble_job(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
-                              std::size_t groom);
+AssembleJob make_assemble_job(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, std::size_t groom);
 
 /// Points that `block` aims at: with the fragments of raster they stay in the second-level cache.
 inline constexpr std::size_t kBlockPoints = 2048;

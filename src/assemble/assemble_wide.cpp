@@ -71,9 +71,7 @@ using wide::Mask;
 const wide::UintTag kUint{};
 const wide::FloatTag kFloat{};
 
-Mask equal(hn::Vec<wide::UintTag> a, std::uint32_t b) {
-  return Mask{hn::RebindMask(kFloat, hn::Eq(a, hn::Set(kUint, b)))};
-}
+Mask equal(hn::Vec<wide::UintTag> a, std::uint32_t b) { return Mask{hn::RebindMask(kFloat, hn::Eq(a, hn::Set(kUint, b)))}; }
 
 /// Camera space of points [begin, end) of the set to x, y, z, and half widths in metres.
 void transform_points(const AssembleJob& job, std::size_t begin, std::size_t end, float* x, float* y, float* z, float* w) {
@@ -121,8 +119,7 @@ void refine_strand(const AssembleJob& job, std::size_t strand, std::size_t at, S
   const std::size_t blended = stride == 3 ? 1 : 0;
   const hn::Vec<wide::IntTag> lane = hn::Iota(wide::IntTag(), 0);
   const auto load_strided = [&](const float* p) {
-    return stride == 1 ? wide::load(p)
-                       : Float(hn::GatherIndex(kFloat, p, hn::Mul(lane, hn::Set(wide::IntTag(), 3))));
+    return stride == 1 ? wide::load(p) : Float(hn::GatherIndex(kFloat, p, hn::Mul(lane, hn::Set(wide::IntTag(), 3))));
   };
   HWY_ALIGN float out[4][hn::MaxLanes(wide::FloatTag())];
   float* const targets[4] = {&block.x[at], &block.y[at], &block.depth[at], &block.radius[at]};
@@ -148,7 +145,8 @@ void refine_strand(const AssembleJob& job, std::size_t strand, std::size_t at, S
 /// Writes consecutive ids from `id` on to points at … at + count − 2 and kNoSegment to the last.
 void number_points(std::uint32_t id, std::size_t at, std::size_t count, ScreenBlock& block) {
   std::uint32_t* ids = &block.id[at];
-  for (std::size_t i = 0; i < count; i += hn::Lanes(kUint)) hn::StoreU(hn::Iota(kUint, id + static_cast<std::uint32_t>(i)), kUint, ids + i);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(kUint))
+    hn::StoreU(hn::Iota(kUint, id + static_cast<std::uint32_t>(i)), kUint, ids + i);
   ids[count - 1] = ScreenBlock::kNoSegment;
 }
 
@@ -178,8 +176,8 @@ void CameraPoints(const AssembleJob& job, std::size_t first, std::size_t end, Sc
 
 bool NeedsClipping(const AssembleJob& job, const ScreenBlock& block) {
   const CameraView& v = job.view;
-  const Float reach = kGuardBand + std::min(std::min(v.center_x, v.width - v.center_x),
-                                            std::min(v.center_y, v.height - v.center_y));
+  const Float reach =
+      kGuardBand + std::min(std::min(v.center_x, v.width - v.center_x), std::min(v.center_y, v.height - v.center_y));
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
   const Mask perspective = equal(hn::Set(kUint, v.perspective), 1);
   const std::size_t whole = block.count / lanes * lanes;

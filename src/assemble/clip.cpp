@@ -13,8 +13,7 @@ struct Point {
 /// Signed "distances" from the five planes; all ≥ 0 inside. Linear in camera space, so a cut is a ratio of two.
 std::array<double, 5> distances(const CameraView& v, const Point& p) {
   const double w = v.perspective ? p.z : 1.0, f = v.focal;
-  return {p.z - static_cast<double>(v.near_plane),
-          f * p.x + (v.center_x + static_cast<double>(kGuardBand)) * w,
+  return {p.z - static_cast<double>(v.near_plane), f * p.x + (v.center_x + static_cast<double>(kGuardBand)) * w,
           f * -p.x + (static_cast<double>(v.width) + kGuardBand - v.center_x) * w,
           f * p.y + (v.center_y + static_cast<double>(kGuardBand)) * w,
           f * -p.y + (static_cast<double>(v.height) + kGuardBand - v.center_y) * w};
@@ -71,10 +70,8 @@ void clip(const AssembleJob& job, ScreenBlock& block) {
     if (in[i].id == ScreenBlock::kNoSegment) continue;
     double t0, t1;
     if (!inside_part(job.view, in[i].p, in[i + 1].p, t0, t1)) continue;
-    if (open && t0 == 0)
-      block.id[block.count - 1] = in[i].id;
-    else
-      append(block, job.view, lerp(in[i].p, in[i + 1].p, t0), in[i].id);
+    if (open && t0 == 0) block.id[block.count - 1] = in[i].id;
+    else append(block, job.view, lerp(in[i].p, in[i + 1].p, t0), in[i].id);
     append(block, job.view, lerp(in[i].p, in[i + 1].p, t1), ScreenBlock::kNoSegment);
     open = t1 == 1 && in[i + 1].id != ScreenBlock::kNoSegment;
   }

@@ -63,9 +63,8 @@ SegmentNumbering number_segments(const Scene& scene, const CameraView& view) {
   SegmentNumbering numbering;
   std::uint64_t ids = 0;
   for (const GroomInstance& groom : scene.grooms) {
-    const std::uint32_t subdivisions = scene.settings.subdivisions > 0
-                                           ? static_cast<std::uint32_t>(scene.settings.subdivisions)
-                                           : choose_subdivisions(make_job(groom, view));
+    const std::uint32_t subdivisions = scene.settings.subdivisions > 0 ? static_cast<std::uint32_t>(scene.settings.subdivisions)
+                                                                       : choose_subdivisions(make_job(groom, view));
     numbering.groom_base.push_back(static_cast<std::uint32_t>(ids));
     numbering.subdivisions.push_back(subdivisions);
     ids += static_cast<std::uint64_t>(groom.strands->point_count()) * subdivisions;

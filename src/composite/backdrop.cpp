@@ -50,8 +50,7 @@ Backdrop make_backdrop(const Scene& scene, const CameraView& view) {
     for (std::size_t y = first; y < last; ++y)
       for (std::size_t x = 0; x < width; ++x)
         backdrop.pixels[y * width + x] =
-            environment.radiance *
-            look_up(environment, view_direction(view, static_cast<int>(x), static_cast<int>(y)));
+            environment.radiance * look_up(environment, view_direction(view, static_cast<int>(x), static_cast<int>(y)));
   });
   return backdrop;
 }

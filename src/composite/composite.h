@@ -15,10 +15,10 @@ Backdrop make_backdrop(const Scene& scene, const CameraView& view);
 /// The layers of one band of the picture, all of the same size and number of samples. Refers, owns nothing.
 struct FrameLayers {
   const GBuffer& gbuffer;
-  const Radiance& radiance;  ///< of GBuffer::sample_keys, or of `center` where there are none
-  const Radiance& edges;     ///< one sample per pixel: a strand that touches it; read where no sample of the pixel is
-                             ///< covered, for AlphaSource::kAnalytic only
-  const OpaqueLayer& opaque; ///< empty without meshes
+  const Radiance& radiance;   ///< of GBuffer::sample_keys, or of `center` where there are none
+  const Radiance& edges;      ///< one sample per pixel: a strand that touches it; read where no sample of the pixel is
+                              ///< covered, for AlphaSource::kAnalytic only
+  const OpaqueLayer& opaque;  ///< empty without meshes
   const Backdrop& backdrop;
 };
 

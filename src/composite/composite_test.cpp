@@ -126,7 +126,8 @@ TEST(Resolve, BandsGoToTheirRows) {
 Image noise(int width, int height) {
   Image image(width, height, {"R", "G", "B", "A"});
   Rng rng(7, 0);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = i % 4 == 3 ? rng.uniform() : std::exp2(rng.uniform() * 16 - 10);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = i % 4 == 3 ? rng.uniform() : std::exp2(rng.uniform() * 16 - 10);
   for (std::size_t i = 3; i < image.pixels.size(); i += 28) image.pixels[i] = 0;
   return image;
 }

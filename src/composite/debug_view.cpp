@@ -29,8 +29,11 @@ Vec3 id_color(std::uint32_t groom, std::uint32_t strand) {
 
 // Dark blue to yellow, brightness rising evenly: five stops of the viridis color map (matplotlib, public domain).
 Vec3 ramp(float x) {
-  static constexpr Vec3 kStops[] = {
-      {0.267f, 0.005f, 0.329f}, {0.230f, 0.322f, 0.546f}, {0.128f, 0.567f, 0.551f}, {0.369f, 0.789f, 0.383f}, {0.993f, 0.906f, 0.144f}};
+  static constexpr Vec3 kStops[] = {{0.267f, 0.005f, 0.329f},
+                                    {0.230f, 0.322f, 0.546f},
+                                    {0.128f, 0.567f, 0.551f},
+                                    {0.369f, 0.789f, 0.383f},
+                                    {0.993f, 0.906f, 0.144f}};
   const float p = std::clamp(x, 0.f, 1.f) * 4;
   const int i = std::min(3, static_cast<int>(p));
   return lerp(kStops[i], kStops[i + 1], p - static_cast<float>(i));
@@ -68,7 +71,8 @@ class Painter {
     }
     if (what_ == View::kOverdraw) {
       const auto n = static_cast<float>(gbuffer_.overdraw[pixel]);
-      return {Vec3(n, n, n), n > 0 ? ramp(std::log2(1 + n) / std::log2(1 + static_cast<float>(most_))) : Vec3(), n > 0 ? 1.f : 0.f};
+      return {Vec3(n, n, n), n > 0 ? ramp(std::log2(1 + n) / std::log2(1 + static_cast<float>(most_))) : Vec3(),
+              n > 0 ? 1.f : 0.f};
     }
     const PixelKey key = gbuffer_.center[pixel];
     return key == kEmptyPixel ? Paint{} : paint_strand(pixel, key);
@@ -122,8 +126,8 @@ void put(Image& image, std::size_t pixel, Vec3 color, float alpha) {
 
 }  // namespace
 
-DebugView make_debug_view(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
-                          const GBuffer& gbuffer, View what) {
+DebugView make_debug_view(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
+                          View what) {
   PELAGE_CHECK(what != View::kBeauty);
   const std::vector<std::string> channels{"R", "G", "B", "A"};
   DebugView result{Image(view.width, view.height, channels), Image(view.width, view.height, channels)};

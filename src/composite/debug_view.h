@@ -16,7 +16,7 @@ struct DebugView {
 
 /// `what` is any View but kBeauty. Needs GBuffer::center, for kCoverage the analytic layer, for kOverdraw `overdraw`.
 /// A strand keeps its kStrandId color from every camera: it follows from the strand's id. O(pixels · log strands).
-DebugView make_debug_view(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
-                          const GBuffer& gbuffer, View what);
+DebugView make_debug_view(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
+                          View what);
 
 }  // namespace pelage

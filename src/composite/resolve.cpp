@@ -21,8 +21,8 @@ Rgba over(Rgba front, Rgba back) {
 class Resolver {
  public:
   explicit Resolver(const FrameLayers& layers)
-      : gbuffer_(layers.gbuffer), radiance_(layers.radiance), edges_(layers.edges), opaque_(layers.opaque), backdrop_(layers.backdrop),
-        samples_(static_cast<std::size_t>(layers.gbuffer.samples)) {}
+      : gbuffer_(layers.gbuffer), radiance_(layers.radiance), edges_(layers.edges), opaque_(layers.opaque),
+        backdrop_(layers.backdrop), samples_(static_cast<std::size_t>(layers.gbuffer.samples)) {}
 
   /// Each sample shows its nearest thing; the pixel is their mean.
   Rgba by_samples(std::size_t pixel) const {

@@ -25,17 +25,15 @@ template <class A, class B>
 
 }  // namespace pelage::detail
 
-#define PELAGE_CHECK(condition)                                                                                   \
-  do {                                                                                                            \
-    if (!(condition))                                                                                             \
-      ::pelage::detail::check_failed(fmt::format("{}:{}: check failed: {}", __FILE__, __LINE__, #condition));     \
+#define PELAGE_CHECK(condition)                                                                                               \
+  do {                                                                                                                        \
+    if (!(condition)) ::pelage::detail::check_failed(fmt::format("{}:{}: check failed: {}", __FILE__, __LINE__, #condition)); \
   } while (false)
-#define PELAGE_CHECK_OP(a, op, b)                                                                                 \
-  do {                                                                                                            \
-    const auto& pelage_a = (a);                                                                                   \
-    const auto& pelage_b = (b);                                                                                   \
-    if (!(pelage_a op pelage_b))                                                                                  \
-      ::pelage::detail::check_op_failed(__FILE__, __LINE__, #a " " #op " " #b, pelage_a, pelage_b);               \
+#define PELAGE_CHECK_OP(a, op, b)                                                                                              \
+  do {                                                                                                                         \
+    const auto& pelage_a = (a);                                                                                                \
+    const auto& pelage_b = (b);                                                                                                \
+    if (!(pelage_a op pelage_b)) ::pelage::detail::check_op_failed(__FILE__, __LINE__, #a " " #op " " #b, pelage_a, pelage_b); \
   } while (false)
 #define PELAGE_CHECK_EQ(a, b) PELAGE_CHECK_OP(a, ==, b)
 #define PELAGE_CHECK_LE(a, b) PELAGE_CHECK_OP(a, <=, b)

@@ -71,8 +71,8 @@ struct MeshTracer::State {
 
 void MeshTracer::State::attach(const WorldMesh& mesh) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
-                             sizeof(Vec3), mesh.positions.size() - 1);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, sizeof(Vec3),
+                             mesh.positions.size() - 1);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                              3 * sizeof(std::uint32_t), mesh.triangles.size());
   rtcCommitGeometry(geometry);
@@ -170,7 +170,8 @@ Surface MeshTracer::surface(const RayHit& hit) const {
   const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.triangle];
   Surface s;
   s.position = corner_blend(mesh.positions, t, hit);
-  s.geometric_normal = normalize(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]));
+  s.geometric_normal =
+      normalize(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]));
   s.normal = mesh.normals.empty() ? s.geometric_normal : normalize(corner_blend(mesh.normals, t, hit));
   // Files disagree about winding; stored normals are what their artist saw.
   if (dot(s.geometric_normal, s.normal) < 0) s.geometric_normal = -s.geometric_normal;

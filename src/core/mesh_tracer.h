@@ -12,8 +12,8 @@ namespace pelage {
 
 struct Ray {
   Vec3 origin;
-  Vec3 direction;            ///< need not be unit length; distances are in its units
-  float near = 0;            ///< hits nearer than this are ignored
+  Vec3 direction;  ///< need not be unit length; distances are in its units
+  float near = 0;  ///< hits nearer than this are ignored
   float far = INFINITY;
 };
 
@@ -22,7 +22,7 @@ struct RayHit {
   float distance = INFINITY;
   std::uint32_t mesh = kNone;  ///< index into Scene::meshes
   std::uint32_t triangle = 0;
-  float u = 0, v = 0;          ///< barycentric weights of the triangle's second and third corner
+  float u = 0, v = 0;  ///< barycentric weights of the triangle's second and third corner
 };
 
 /// What shading needs to know of a hit.

@@ -62,9 +62,8 @@ void for_each_block(std::size_t blocks, const Body& body) {
 /// The ranges are the same for any thread count (multiples of `grain`); the order in which they run is not.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
-  detail::for_each_block((count + grain - 1) / grain, [&](std::size_t b) {
-    body(b * grain, (b + 1) * grain < count ? (b + 1) * grain : count);
-  });
+  detail::for_each_block((count + grain - 1) / grain,
+                         [&](std::size_t b) { body(b * grain, (b + 1) * grain < count ? (b + 1) * grain : count); });
 }
 
 }  // namespace pelage

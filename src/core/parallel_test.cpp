@@ -32,9 +32,11 @@ TEST_P(Parallel, EveryItemOnceInRangesThatStartAtMultiplesOfTheGrain) {
 }
 
 TEST_P(Parallel, ExceptionReachesTheCaller) {
-  EXPECT_THROW(parallel_for(100, 1, [](std::size_t begin, std::size_t) {
-    if (begin == 57) throw std::runtime_error("57");
-  }), std::runtime_error);
+  EXPECT_THROW(parallel_for(100, 1,
+                            [](std::size_t begin, std::size_t) {
+                              if (begin == 57) throw std::runtime_error("57");
+                            }),
+               std::runtime_error);
 }
 
 TEST_P(Parallel, LoopsNest) {

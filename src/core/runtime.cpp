@@ -30,12 +30,12 @@ constexpr std::int64_t kTargets[] = {HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128, H
 }  // namespace
 
 void set_thread_count(int threads) {
-  if (threads < 0)
-    throw Error("threads", "", "a negative number", "give 0 for one thread per core, or a positive number");
+  if (threads < 0) throw Error("threads", "", "a negative number", "give 0 for one thread per core, or a positive number");
   Arena& s = state();
   const std::lock_guard lock(s.mutex);
   s.threads = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  s.limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(s.threads));
+  s.limit =
+      std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(s.threads));
   s.arena = std::make_unique<tbb::task_arena>(s.threads);
 }
 

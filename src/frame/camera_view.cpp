@@ -42,8 +42,7 @@ CameraView make_camera_view(const Camera& camera, int width, int height) {
   check_camera(camera);
   const Vec3 forward = normalize(camera.target - camera.eye);
   Vec3 side = cross(forward, normalize(camera.up));
-  if (!(dot(side, side) > 1e-10f))
-    side = cross(forward, std::fabs(forward.y) < 0.9f ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
+  if (!(dot(side, side) > 1e-10f)) side = cross(forward, std::fabs(forward.y) < 0.9f ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
   const Vec3 right = normalize(side), down = cross(forward, right);
 
   CameraView view;

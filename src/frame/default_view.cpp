@@ -85,8 +85,8 @@ void add_default_camera(Scene& scene) {
   const float azimuth = radians(-28), elevation = radians(6), margin = 1.06f;
   Camera camera;
   camera.fov_y = radians(26);  // about a portrait lens
-  const Basis b = basis_looking_from({std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                                      std::cos(azimuth) * std::cos(elevation)});
+  const Basis b = basis_looking_from(
+      {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)});
   std::vector<Vec3> points = subject_points(scene);
   if (points.empty()) points = {{-0.1f, -0.1f, -0.1f}, {0.1f, 0.1f, 0.1f}};
   Bounds box;

@@ -53,8 +53,7 @@ TEST_P(Framing, FillsThePicture) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Framing,
                          testing::Combine(testing::Values(Vec2(100, 100), Vec2(1920, 1080), Vec2(300, 900)),
-                                          testing::Values(0.01f, 1.f, 500.f),
-                                          testing::Values(Vec3(0, 0, 0), Vec3(3, -2, 1))));
+                                          testing::Values(0.01f, 1.f, 500.f), testing::Values(Vec3(0, 0, 0), Vec3(3, -2, 1))));
 
 TEST(DefaultView, BoundsAreInWorldSpace) {
   Scene scene = scene_of({{0, 0, 0}, {1, 2, 3}}, 64, 64);

@@ -131,7 +131,8 @@ void render_band(const Frame& frame, const Band& band, Stages& stages, Image& li
   Radiance radiance, edges;
   stages.run("shade", "evaluations", [&](const Progress&) {
     radiance = shade(frame.scene, view, frame.numbering, gbuffer, frame.rig, samples);
-    if (analytic) edges = shade(frame.scene, view, frame.numbering, edge_layer(gbuffer), frame.rig, std::array{Vec2(0.5f, 0.5f)});
+    if (analytic)
+      edges = shade(frame.scene, view, frame.numbering, edge_layer(gbuffer), frame.rig, std::array{Vec2(0.5f, 0.5f)});
     return StageWork{radiance.color.size() + edges.color.size(),
                      bytes_of(radiance.index, edges.index) + bytes_of(radiance.color, edges.color)};
   });

@@ -89,8 +89,7 @@ TEST(Frame, ExposureDoubles) {
   const Image dark = render(scene).linear;
   scene.settings.exposure = 1;
   const Image bright = render(scene).linear;
-  for (std::size_t i = 0; i < dark.pixels.size(); ++i)
-    ASSERT_EQ(bright.pixels[i], dark.pixels[i] * (i % 4 == 3 ? 1 : 2));
+  for (std::size_t i = 0; i < dark.pixels.size(); ++i) ASSERT_EQ(bright.pixels[i], dark.pixels[i] * (i % 4 == 3 ? 1 : 2));
 }
 
 TEST(Frame, MeshesHideHairAndShowBehindIt) {
@@ -130,10 +129,11 @@ TEST_P(EveryView, HasTheSameBitsForAnyThreadsAndInstructionSet) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Views, EveryView,
-                         testing::Combine(testing::Values(View::kBeauty), testing::Values(AlphaSource::kSamples, AlphaSource::kAnalytic)));
+                         testing::Combine(testing::Values(View::kBeauty),
+                                          testing::Values(AlphaSource::kSamples, AlphaSource::kAnalytic)));
 INSTANTIATE_TEST_SUITE_P(DebugViews, EveryView,
-                         testing::Combine(testing::Values(View::kStrandId, View::kU, View::kTangent, View::kDepth, View::kCoverage,
-                                                          View::kOverdraw, View::kAlbedo),
+                         testing::Combine(testing::Values(View::kStrandId, View::kU, View::kTangent, View::kDepth,
+                                                          View::kCoverage, View::kOverdraw, View::kAlbedo),
                                           testing::Values(AlphaSource::kSamples)));
 
 // A band of a tenth of the picture: its alpha is a tenth.

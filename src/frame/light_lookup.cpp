@@ -14,7 +14,8 @@ float texel_crossings(const OpacityMap& map, int x, int y, float z) {
                             static_cast<std::size_t>(x / OpacityMap::kOriginBlock);
   const float d = std::max(z - map.first_depth[block], 0.f);
   const std::size_t layer = static_cast<std::size_t>(layer_of(map, d));
-  const std::size_t texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.view.width) + static_cast<std::size_t>(x);
+  const std::size_t texel =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(map.view.width) + static_cast<std::size_t>(x);
   const std::uint32_t* layers = map.crossings.data() + texel * OpacityMap::kLayers;
   const float before = layer > 0 ? static_cast<float>(layers[layer - 1]) : 0.f;
   const float begin = layer > 0 ? map.layer_end[layer - 1] : 0.f;
@@ -94,8 +95,8 @@ Illumination illuminate(const PreparedLight& prepared, Vec3 p) {
 
 Vec3 environment_irradiance(const std::array<Vec3, 9>& c, Vec3 normal) {
   const kernel::LightHarmonics h = kernel::light_harmonics(normal);
-  const Vec3 e = c[0] * h.c00 + c[1] * h.c1n + c[2] * h.c10 + c[3] * h.c1p + c[4] * h.c2nn + c[5] * h.c2n +
-                 c[6] * h.c20 + c[7] * h.c2p + c[8] * h.c2pp;
+  const Vec3 e = c[0] * h.c00 + c[1] * h.c1n + c[2] * h.c10 + c[3] * h.c1p + c[4] * h.c2nn + c[5] * h.c2n + c[6] * h.c20 +
+                 c[7] * h.c2p + c[8] * h.c2pp;
   return max(e, {0, 0, 0});
 }
 

@@ -11,9 +11,9 @@ namespace pelage {
 
 /// Camera-space position of a world-space point (x right, y down, z forward), and where the map sees it.
 struct MapPlace {
-  float x, y;      ///< texels
-  float z;         ///< metres in front of the light
-  bool in_front;   ///< z is beyond the near plane; otherwise x and y mean nothing
+  float x, y;     ///< texels
+  float z;        ///< metres in front of the light
+  bool in_front;  ///< z is beyond the near plane; otherwise x and y mean nothing
 };
 MapPlace place_on_map(const CameraView& view, Vec3 world);
 
@@ -34,8 +34,8 @@ float crossings_at(const OpacityMap& map, Vec3 p);
 
 /// Metres that something must lie in front of a place to shade it: keeps roots from being shaded by their own scalp.
 struct ShadowBias {
-  float metres = 0;      ///< constant part
-  float texels = 1.5f;   ///< part that grows with the size of a texel there
+  float metres = 0;     ///< constant part
+  float texels = 1.5f;  ///< part that grows with the size of a texel there
 };
 
 /// Share of the light that the meshes let pass to `p`, 0…1: percentage-closer filtering over 3×3 texels with a tent
@@ -44,9 +44,9 @@ float mesh_visibility(const ShadowMap& map, Vec3 p, ShadowBias bias);
 
 /// Light that arrives at a place if nothing stands between.
 struct Illumination {
-  Vec3 to_light;     ///< unit length
-  float distance;    ///< metres; +inf for directional lights
-  Vec3 irradiance;   ///< W/m² on a surface that faces the light
+  Vec3 to_light;    ///< unit length
+  float distance;   ///< metres; +inf for directional lights
+  Vec3 irradiance;  ///< W/m² on a surface that faces the light
 };
 Illumination illuminate(const PreparedLight& light, Vec3 p);
 

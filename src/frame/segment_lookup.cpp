@@ -66,13 +66,12 @@ StrandSurface surface_at(const Scene& scene, const SegmentNumbering& numbering, 
   r.position = transform_point(groom.transform, blend(span, basis_weights(set.basis, local)));
   r.tangent = normalize(transform_vector(groom.transform, direction(span, set.basis, local)));
   r.u = (static_cast<float>(s.span) + local) / static_cast<float>(spans);
-  r.width = (span.width[0] + (span.width[1] - span.width[0]) * local) * groom.width_scale *
-            similarity_scale(groom.transform);
+  r.width = (span.width[0] + (span.width[1] - span.width[0]) * local) * groom.width_scale * similarity_scale(groom.transform);
   return r;
 }
 
-float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, const CameraView& view,
-                        const SegmentRef& s, float x, float y) {
+float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, const CameraView& view, const SegmentRef& s,
+                        float x, float y) {
   const GroomInstance& groom = scene.grooms[s.groom];
   const Span span = load_span(*groom.strands, s.strand, s.span);
   const float step = 1.f / static_cast<float>(numbering.subdivisions[s.groom]);

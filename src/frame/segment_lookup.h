@@ -32,7 +32,7 @@ StrandSurface surface_at(const Scene& scene, const SegmentNumbering& numbering, 
 
 /// t ∈ [0, 1] of the place on segment `s` (the chord that raster drew) that is seen nearest to the screen point
 /// (x, y), pixels; perspective-correct.
-float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, const CameraView& view,
-                        const SegmentRef& s, float x, float y);
+float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, const CameraView& view, const SegmentRef& s,
+                        float x, float y);
 
 }  // namespace pelage

@@ -11,14 +11,15 @@ namespace pelage::groom {
 
 /// Samples of a signed distance at the corners of cubic cells; x runs fastest.
 struct DistanceGrid {
-  Vec3 origin;                   ///< place of sample (0, 0, 0), metres
-  float spacing = 1;             ///< metres
-  int nx = 0, ny = 0, nz = 0;    ///< samples per axis, each ≥ 2
-  std::vector<float> distance;   ///< [nz·ny·nx] metres, negative inside
+  Vec3 origin;                  ///< place of sample (0, 0, 0), metres
+  float spacing = 1;            ///< metres
+  int nx = 0, ny = 0, nz = 0;   ///< samples per axis, each ≥ 2
+  std::vector<float> distance;  ///< [nz·ny·nx] metres, negative inside
 
   std::size_t index(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(ny) + static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(nx) + static_cast<std::size_t>(x);
+               static_cast<std::size_t>(nx) +
+           static_cast<std::size_t>(x);
   }
   Vec3 place(int x, int y, int z) const {
     return origin + Vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * spacing;

@@ -53,7 +53,8 @@ StrandSet grow(const GrowSettings& settings, const TriangleMesh& surface, const 
   const std::size_t guide_count = static_cast<std::size_t>(std::min(wanted, settings.strands));
   const float longest = settings.length * (1 + 2.5f * settings.length_variation);
   const GuideSet guides = grow_guides(settings, ground, guide_count, longest);
-  const std::vector<Root> roots = scatter_roots(surface, static_cast<std::size_t>(settings.strands), settings.seed, ground.density());
+  const std::vector<Root> roots =
+      scatter_roots(surface, static_cast<std::size_t>(settings.strands), settings.seed, ground.density());
   return fill_strands(settings, ground, guides, roots, progress);
 }
 

@@ -313,7 +313,7 @@ TEST(Grow, AnyMeshWithArea) {
   one.triangles.resize(1);
   TriangleMesh holed = square();
   holed.triangles.push_back({0, 0, 1}), holed.triangles.push_back({2, 2, 2});  // no area, no hair
-  TriangleMesh fan = square();  // three faces at one edge
+  TriangleMesh fan = square();                                                 // three faces at one edge
   fan.positions.push_back({0.5f, 1, -0.5f});
   fan.triangles.push_back({0, 2, 4});
   for (const TriangleMesh& mesh : {one, holed, fan}) {

@@ -76,7 +76,8 @@ class GuideGrower {
     out[0] = p;
     for (int i = 1; i < points_; ++i) {
       const float s = static_cast<float>(i) * step_;
-      const Vec3 pull = kDown * (s_.gravity * smoothstep(0.f, fall_.bend_length, s)) + noise3_vector(p * 25.f, 31u) * fall_.wander;
+      const Vec3 pull =
+          kDown * (s_.gravity * smoothstep(0.f, fall_.bend_length, s)) + noise3_vector(p * 25.f, 31u) * fall_.wander;
       direction = normalize(direction + pull * turn);
       if (ground_.scalp)
         direction = normalize(direction + Vec3(0, 0, step_) * (shoulder_pull(p, front) / 0.035f - sweep_back(p) / 0.03f));
@@ -109,9 +110,10 @@ class GuideGrower {
         direction = normalize(direction * 0.4f + normalize(gate - p));
       } else {
         const float hung = s - tie, out_of_tie = smoothstep(0.035f, 0.f, hung);
-        direction = normalize(direction + axis * (out_of_tie * step_ / 0.006f) +
-                              (kDown * (s_.gravity * smoothstep(0.f, fall_.bend_length, hung)) +
-                               noise3_vector(p * 25.f, 31u) * fall_.wander) * (step_ / fall_.bend_length));
+        direction = normalize(
+            direction + axis * (out_of_tie * step_ / 0.006f) +
+            (kDown * (s_.gravity * smoothstep(0.f, fall_.bend_length, hung)) + noise3_vector(p * 25.f, 31u) * fall_.wander) *
+                (step_ / fall_.bend_length));
       }
       const Vec3 next = push_out(*ground_.collider, p + direction * step_, std::min(0.4f * s, layer));
       direction = normalize(next - p);

@@ -12,9 +12,9 @@ float skull(Vec3 q) {
   float d = sd_ellipsoid(q - Vec3(0, 0.030f, -0.012f), {0.0765f, 0.088f, 0.099f});
   d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.028f, 0.024f), {0.060f, 0.080f, 0.063f}), 0.03f);
   d = smooth_union(d, sd_capsule(q, {0.050f, -0.045f, 0.004f}, {0.012f, -0.099f, 0.062f}, 0.016f, 0.013f), 0.03f);  // jaw
-  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.099f, 0.072f), {0.018f, 0.014f, 0.016f}), 0.02f);            // chin
-  d = smooth_union(d, sd_ellipsoid(q - Vec3(0.030f, -0.052f, 0.055f), {0.026f, 0.032f, 0.026f}), 0.020f);     // cheek
-  return smooth_union(d, sd_ellipsoid(q - Vec3(0.043f, -0.020f, 0.060f), {0.020f, 0.013f, 0.018f}), 0.03f);   // cheekbone
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0, -0.099f, 0.072f), {0.018f, 0.014f, 0.016f}), 0.02f);                 // chin
+  d = smooth_union(d, sd_ellipsoid(q - Vec3(0.030f, -0.052f, 0.055f), {0.026f, 0.032f, 0.026f}), 0.020f);           // cheek
+  return smooth_union(d, sd_ellipsoid(q - Vec3(0.043f, -0.020f, 0.060f), {0.020f, 0.013f, 0.018f}), 0.03f);         // cheekbone
 }
 
 float eyes(float d, Vec3 q) {
@@ -25,7 +25,8 @@ float eyes(float d, Vec3 q) {
   d = smooth_union(d, lower_lid, 0.005f);
   d = smooth_union(d, upper_lid, 0.0025f);
   d = smooth_difference(d, sd_capsule(q, {0.0185f, -0.0035f, 0.0800f}, {0.0310f, -0.0070f, 0.0850f}, 0.0012f, 0.0012f), 0.004f);
-  return smooth_difference(d, sd_capsule(q, {0.0310f, -0.0070f, 0.0850f}, {0.0450f, -0.0035f, 0.0780f}, 0.0012f, 0.0012f), 0.004f);
+  return smooth_difference(d, sd_capsule(q, {0.0310f, -0.0070f, 0.0850f}, {0.0450f, -0.0035f, 0.0780f}, 0.0012f, 0.0012f),
+                           0.004f);
 }
 
 float nose(float d, Vec3 q) {

@@ -13,8 +13,7 @@ namespace {
 constexpr int kCandidates = 6;  // guides looked at for each strand
 
 /// The kBlend best of the guides near `root`: distance counts, and more where the combing disagrees.
-void choose_guides(const PointGrid& grid, const std::vector<Vec3>& guide_combing, Vec3 root, Vec3 root_combing,
-                   Membership& m) {
+void choose_guides(const PointGrid& grid, const std::vector<Vec3>& guide_combing, Vec3 root, Vec3 root_combing, Membership& m) {
   std::uint32_t guide[kCandidates];
   float cost[kCandidates], sum = 0;
   const int count = grid.nearest(root, kCandidates, guide, cost);

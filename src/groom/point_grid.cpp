@@ -80,8 +80,7 @@ int PointGrid::nearest(Vec3 p, int k, std::uint32_t* index, float* distance2) co
     for (int z = -ring; z <= ring; ++z)
       for (int y = -ring; y <= ring; ++y) {
         const bool shell = std::max(std::abs(z), std::abs(y)) == ring;
-        for (int x = -ring; x <= ring; x += shell || ring == 0 ? 1 : 2 * ring)
-          visit_cell(c.x + x, c.y + y, c.z + z, offer);
+        for (int x = -ring; x <= ring; x += shell || ring == 0 ? 1 : 2 * ring) visit_cell(c.x + x, c.y + y, c.z + z, offer);
       }
   }
   if (count == k) {

@@ -14,9 +14,9 @@ namespace pelage::groom {
 namespace {
 
 constexpr std::uint32_t kDartStream = 0x726f6f74u;  // keeps darts apart from the strands' random numbers
-constexpr int kPatience = 100;         // darts that may miss in a row before all later discs shrink
-constexpr float kThinnest = 0.1f;      // density below which discs grow no further
-constexpr float kLargestRadius = 8;    // in spacings; bounds the cells that the first darts look at
+constexpr int kPatience = 100;                      // darts that may miss in a row before all later discs shrink
+constexpr float kThinnest = 0.1f;                   // density below which discs grow no further
+constexpr float kLargestRadius = 8;                 // in spacings; bounds the cells that the first darts look at
 
 void check_mesh(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error("surface", "", "the mesh has no triangles", "give a mesh with faces");
@@ -83,8 +83,7 @@ class SurfaceSampler {
 
 }  // namespace
 
-std::vector<Root> scatter_roots(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed,
-                                const DensityField& density) {
+std::vector<Root> scatter_roots(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed, const DensityField& density) {
   check_mesh(mesh);
   const SurfaceSampler sampler(mesh, density);
   // n discs of radius f·spacing/√(n/count) cover π·f² of the surface: 1.3 leaves about a quarter of the darts a place.

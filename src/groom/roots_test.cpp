@@ -54,7 +54,9 @@ TEST(ScatterRoots, FollowsAreaNotTriangles) {
 }
 
 TEST(ScatterRoots, FollowsTheDensity) {
-  const std::vector<Root> roots = scatter_roots(plate(), 3000, 5, [](Vec3 p) { return p.x < 0.5f ? 0.f : p.z < 0.5f ? 1.f : 0.5f; });
+  const std::vector<Root> roots = scatter_roots(plate(), 3000, 5, [](Vec3 p) {
+    return p.x < 0.5f ? 0.f : p.z < 0.5f ? 1.f : 0.5f;
+  });
   int sparse = 0;
   for (const Root& r : roots) {
     EXPECT_GE(r.position.x, 0.5f);

@@ -13,8 +13,8 @@ struct HairlineKnot {
   float height;   ///< metres, y of the hairline
 };
 // Forehead, temple with its corner, sideburn, arch over the ear, behind the ear, nape.
-constexpr HairlineKnot kHairline[] = {{0.00f, 0.071f}, {0.35f, 0.070f}, {0.62f, 0.068f}, {0.85f, 0.050f}, {1.08f, 0.030f},
-                                      {1.28f, 0.006f}, {1.42f, -0.004f}, {1.52f, 0.010f}, {1.70f, 0.031f}, {1.90f, 0.022f},
+constexpr HairlineKnot kHairline[] = {{0.00f, 0.071f},  {0.35f, 0.070f},  {0.62f, 0.068f},  {0.85f, 0.050f}, {1.08f, 0.030f},
+                                      {1.28f, 0.006f},  {1.42f, -0.004f}, {1.52f, 0.010f},  {1.70f, 0.031f}, {1.90f, 0.022f},
                                       {2.12f, -0.018f}, {2.40f, -0.052f}, {2.75f, -0.068f}, {3.15f, -0.070f}};
 
 float hairline_height(float azimuth) {
@@ -26,8 +26,8 @@ float hairline_height(float azimuth) {
   return std::end(kHairline)[-1].height;
 }
 
-constexpr Vec3 kWhorl{-0.010f, 0, -0.050f};   // end of the parting at the crown, from above
-constexpr float kPartingFront = 0.140f;       // z of its other end, beyond the hairline, so that nothing fans out there
+constexpr Vec3 kWhorl{-0.010f, 0, -0.050f};  // end of the parting at the crown, from above
+constexpr float kPartingFront = 0.140f;      // z of its other end, beyond the hairline, so that nothing fans out there
 
 }  // namespace
 

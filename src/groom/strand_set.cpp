@@ -50,8 +50,7 @@ class Validator {
   template <class T>
   void size(const std::vector<T>& array, const char* name, bool single, bool per_strand, bool per_point) const {
     const std::size_t n = array.size();
-    if (n == 0 || (single && n == 1) || (per_strand && n == set_.strand_count()) ||
-        (per_point && n == set_.point_count()))
+    if (n == 0 || (single && n == 1) || (per_strand && n == set_.strand_count()) || (per_point && n == set_.point_count()))
       return;
     fail(name, fmt::format("{} entries for {} strands of {} points", n, set_.strand_count(), set_.point_count()));
   }
@@ -95,10 +94,10 @@ std::size_t mend_attributes(StrandSet& set) {
   const auto mended_color = [](Vec3 c) {
     return Vec3(clamped(c.x, kDefaultColor), clamped(c.y, kDefaultColor), clamped(c.z, kDefaultColor));
   };
-  return mend(set.colors, good_color, mended_color) +
-         mend(set.transparency, in_unit, [](float t) { return clamped(t, 0); }) +
+  return mend(set.colors, good_color, mended_color) + mend(set.transparency, in_unit, [](float t) { return clamped(t, 0); }) +
          mend(set.root_uv, good_uv, [](Vec2) { return Vec2(); }) +
-         mend(set.guide_id, [](std::int32_t g) { return g >= -1; }, [](std::int32_t) { return -1; });
+         mend(
+             set.guide_id, [](std::int32_t g) { return g >= -1; }, [](std::int32_t) { return -1; });
 }
 
 float median_of_good(const float* begin, const float* end, float fallback) {
@@ -112,8 +111,8 @@ float median_of_good(const float* begin, const float* end, float fallback) {
 
 std::size_t mend_widths(StrandSet& set) {
   std::vector<float>& widths = set.widths;
-  const auto bad = static_cast<std::size_t>(
-      std::count_if(widths.begin(), widths.end(), [](float width) { return !usable_width(width); }));
+  const auto bad =
+      static_cast<std::size_t>(std::count_if(widths.begin(), widths.end(), [](float width) { return !usable_width(width); }));
   if (bad == 0) return 0;
   const float fallback = median_of_good(widths.data(), widths.data() + widths.size(), kDefaultWidth);
   if (widths.size() != set.point_count()) {
@@ -125,7 +124,8 @@ std::size_t mend_widths(StrandSet& set) {
     float* const end = widths.data() + set.offsets[s + 1];
     if (std::all_of(begin, end, usable_width)) continue;
     const float median = median_of_good(begin, end, fallback);
-    std::replace_if(begin, end, [](float width) { return !usable_width(width); }, median);
+    std::replace_if(
+        begin, end, [](float width) { return !usable_width(width); }, median);
   }
   return bad;
 }
@@ -163,10 +163,8 @@ class Compactor {
     for (std::uint32_t i = begin; i < end; ++i) {
       if (!usable(set_.points[i])) continue;
       ++usable_points;
-      if (kept_points_ > first && zero_length(set_.points[kept_points_ - 1], set_.points[i]))
-        ++repeated;
-      else
-        move_point(i);
+      if (kept_points_ > first && zero_length(set_.points[kept_points_ - 1], set_.points[i])) ++repeated;
+      else move_point(i);
     }
     report_.non_finite_points += end - begin - usable_points;
     if (kept_points_ - first >= 2) report_.zero_length_segments += repeated;  // else the whole strand is counted
@@ -211,8 +209,8 @@ class Compactor {
   bool drop(std::uint32_t first, std::uint32_t usable_points) {
     const std::uint32_t count = kept_points_ - first;
     const auto points = set_.points.begin();
-    const bool has_length = std::any_of(points + first, points + kept_points_,
-                                        [&](Vec3 p) { return !zero_length(*(points + first), p); });
+    const bool has_length =
+        std::any_of(points + first, points + kept_points_, [&](Vec3 p) { return !zero_length(*(points + first), p); });
     if (has_length) return false;
     ++(usable_points >= 2 && count >= 1 ? report_.degenerate_strands : report_.short_strands);
     return true;
@@ -229,10 +227,8 @@ class Compactor {
       if (array.size() == before) array.resize(after);
     };
     if (widths_) set_.widths.resize(kept_points_);
-    if (point_colors_)
-      set_.colors.resize(kept_points_);
-    else
-      cut(set_.colors, strands, kept_strands_);
+    if (point_colors_) set_.colors.resize(kept_points_);
+    else cut(set_.colors, strands, kept_strands_);
     cut(set_.transparency, points, kept_points_);
     cut(set_.root_uv, strands, kept_strands_), cut(set_.strand_id, strands, kept_strands_);
     cut(set_.guide_id, strands, kept_strands_), cut(set_.group, strands, kept_strands_);
@@ -274,7 +270,8 @@ bool strands_are_sound(const StrandSet& set) {
 
 bool RepairReport::clean() const {
   return non_finite_points + short_strands + zero_length_segments + degenerate_strands + partial_spans + bad_widths +
-             bad_attributes == 0;
+             bad_attributes ==
+         0;
 }
 
 std::string RepairReport::summary() const {

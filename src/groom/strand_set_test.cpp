@@ -80,7 +80,7 @@ TEST(StrandSet, RepairRemovesZeroLengthSegments) {
 TEST(StrandSet, RepairMovesEveryAttributeInStep) {
   StrandSet set = kit::full_groom();
   const StrandSet before = set;
-  set.points[4] = {kNan, 0, 0};                               // strand 1 loses its root
+  set.points[4] = {kNan, 0, 0};                                // strand 1 loses its root
   for (std::size_t i = 0; i < 4; ++i) set.points[i].x = kInf;  // strand 0 goes
   repair(set);
   ASSERT_EQ(set.offsets, (std::vector<std::uint32_t>{0, 3, 7}));
@@ -168,7 +168,10 @@ TEST(StrandSet, ValidateNamesTheFirstBrokenInvariant) {
   const std::pair<const char*, std::function<void(StrandSet&)>> breakages[] = {
       {"groom: offsets: the first is 1", [](StrandSet& s) { s.offsets[0] = 1; }},
       {"groom: offsets: the last is 11", [](StrandSet& s) { s.offsets[3] = 11; }},
-      {"groom: strand 1: its offset lies after", [](StrandSet& s) { s.offsets = {0, 8, 4, 12}; }},
+      {"groom: strand 1: its offset lies after",
+       [](StrandSet& s) {
+         s.offsets = {0, 8, 4, 12};
+       }},
       {"groom: strand 0: 1 points", [](StrandSet& s) { s.offsets[1] = 1; }},
       {"groom: widths: 5 entries", [](StrandSet& s) { s.widths.resize(5); }},
       {"groom: widths: none", [](StrandSet& s) { s.widths.clear(); }},
@@ -181,7 +184,10 @@ TEST(StrandSet, ValidateNamesTheFirstBrokenInvariant) {
       {"groom: colors[1]: not in 0…1", [](StrandSet& s) { s.colors[1].y = 1.5f; }},
       {"groom: transparency[9]", [](StrandSet& s) { s.transparency[9] = kNan; }},
       {"groom: guide_id[1]", [](StrandSet& s) { s.guide_id[1] = -2; }},
-      {"groom: strand 0: 3 points, a Bézier", [](StrandSet& s) { s.basis = CurveBasis::kBezier, s.offsets = {0, 3, 8, 12}; }},
+      {"groom: strand 0: 3 points, a Bézier",
+       [](StrandSet& s) {
+         s.basis = CurveBasis::kBezier, s.offsets = {0, 3, 8, 12};
+       }},
   };
   for (const auto& [message, breakage] : breakages) {
     StrandSet set = kit::full_groom();

@@ -54,7 +54,8 @@ struct Lock {
 struct Oscillator {
   float c, s, step_c, step_s;
   Oscillator() = default;
-  Oscillator(float phase, float step) : c(std::cos(phase)), s(std::sin(phase)), step_c(std::cos(step)), step_s(std::sin(step)) {}
+  Oscillator(float phase, float step)
+      : c(std::cos(phase)), s(std::sin(phase)), step_c(std::cos(step)), step_s(std::sin(step)) {}
   float next() {
     const float value = s, turned = c * step_c - s * step_s;
     s = s * step_c + c * step_s, c = turned;
@@ -83,11 +84,11 @@ class Frizz {
 
 /// The numbers drawn for one strand.
 struct Traits {
-  float length, width;       ///< metres
-  float tightness;           ///< of its lock, and for a stray none
-  float phase, radius;       ///< of the curl
-  float frizz;               ///< metres, amplitude at the tip
-  float stray;               ///< metres that the tip stands off; 0 for hair that stays in its lock
+  float length, width;  ///< metres
+  float tightness;      ///< of its lock, and for a stray none
+  float phase, radius;  ///< of the curl
+  float frizz;          ///< metres, amplitude at the tip
+  float stray;          ///< metres that the tip stands off; 0 for hair that stays in its lock
   HairGroup group;
 };
 
@@ -169,7 +170,11 @@ Traits StrandFiller::draw_traits(std::uint32_t root, Rng& rng) const {
   t.phase = lock.phase + style_.phase_spread * Rng(s_.seed, members_[root].tuft, kTuftStream).normal() + 0.25f * rng.normal();
   t.radius = lock.radius * mix(0.75f, 1.15f, rng.uniform());
   const float size = std::min(1.f, s_.length / 0.15f);
-  t.frizz = size * s_.frizz * (0.0005f + 0.0035f * s_.frizz) * (stray ? 2.5f : wool ? 2.f : 1.f) * mix(0.5f, 1.5f, rng.uniform());
+  t.frizz = size * s_.frizz * (0.0005f + 0.0035f * s_.frizz) *
+            (stray  ? 2.5f
+             : wool ? 2.f
+                    : 1.f) *
+            mix(0.5f, 1.5f, rng.uniform());
   t.stray = stray ? size * mix(0.003f, 0.022f, square(rng.uniform())) : 0;
   return t;
 }
@@ -241,7 +246,8 @@ HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* posi
     const float grown = smoothstep(0.f, style_.curl_start, u) * mix(1.f, 0.8f, u);
     axis += step / std::sqrt(1 + square(slope * grown));
 
-    const float gather = smoothstep(lock.start, 0.7f, u), fine = std::max(style_.tuft, 0.8f * t.tightness) * smoothstep(0.f, 0.5f, u);
+    const float gather = smoothstep(lock.start, 0.7f, u),
+                fine = std::max(style_.tuft, 0.8f * t.tightness) * smoothstep(0.f, 0.5f, u);
     const float close = (1 - t.tightness * gather) * tie_squeeze(own, axis), apart = 1 - loyalty * gather;
     const GuidePlace own_place = guide_at(own, axis);
     Vec3 p = own_place.position + carry(own_place, attached[0], close), blend;
@@ -257,7 +263,8 @@ HairGroup StrandFiller::fill(std::uint32_t index, std::size_t points, Vec3* posi
     p = p + frizz.next() * (t.frizz * u * (0.3f + 0.7f * u));
     if (t.stray > 0) p = p + outward(root, p) * (t.stray * square(u));
     const float clearance = std::min(0.3f * s, 0.0008f);
-    p = ground_.collider ? push_out(*ground_.collider, p, clearance) : keep_above(root.position, root.normal, ground_.size, p, clearance);
+    p = ground_.collider ? push_out(*ground_.collider, p, clearance)
+                         : keep_above(root.position, root.normal, ground_.size, p, clearance);
     position[j] = p;
     width[j] = t.width * (1 - s_.taper * square(u));
   }

@@ -25,7 +25,8 @@ GrowSettings grow_defaults(HairStyle style) {
       break;
     case HairStyle::kAfro:
       s.length = 0.15f, s.length_variation = 0.07f, s.clumps = 5000, s.clump_tightness = 0.2f, s.frizz = 0.5f;
-      s.curl_radius = 0.0035f, s.curl_pitch = 0.011f, s.flyaways = 0.03f, s.gravity = 0.06f, s.width = 9e-5f, s.taper = 0.4f, s.volume = 0.004f;
+      s.curl_radius = 0.0035f, s.curl_pitch = 0.011f, s.flyaways = 0.03f, s.gravity = 0.06f, s.width = 9e-5f, s.taper = 0.4f,
+      s.volume = 0.004f;
       break;
     case HairStyle::kPonytail:
       s.length = 0.42f, s.length_variation = 0.1f, s.clumps = 900, s.clump_tightness = 0.35f, s.frizz = 0.12f;

@@ -43,12 +43,8 @@ ByteSource::ByteSource(std::string name, std::span<const std::byte> bytes)
     : name_(std::move(name)), size_(bytes.size()), memory_(bytes) {}
 
 ByteSource::ByteSource(ByteSource&& other) noexcept
-    : name_(std::move(other.name_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      size_(other.size_),
-      memory_(other.memory_),
-      window_(std::move(other.window_)),
-      window_begin_(other.window_begin_) {}
+    : name_(std::move(other.name_)), descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_),
+      memory_(other.memory_), window_(std::move(other.window_)), window_begin_(other.window_begin_) {}
 
 ByteSource::~ByteSource() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -64,10 +60,8 @@ void ByteSource::require(std::uint64_t offset, std::uint64_t bytes, const char* 
 void ByteSource::read(std::uint64_t offset, std::size_t bytes, void* target, const char* what) const {
   require(offset, bytes, what);
   if (bytes == 0) return;
-  if (descriptor_ < 0 || bytes <= kWindowBytes / 4)
-    std::memcpy(target, window(offset, bytes, what), bytes);
-  else
-    read_file(offset, bytes, static_cast<std::byte*>(target), what);
+  if (descriptor_ < 0 || bytes <= kWindowBytes / 4) std::memcpy(target, window(offset, bytes, what), bytes);
+  else read_file(offset, bytes, static_cast<std::byte*>(target), what);
 }
 
 void ByteSource::read_file(std::uint64_t offset, std::size_t bytes, std::byte* target, const char* what) const {

@@ -87,8 +87,9 @@ Image read_image(const std::string& path, bool linearize) {
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.width > kMaxSide || spec.height > kMaxSide ||
       spec.depth > 1)
-    throw Error(path, "", fmt::format("{} × {} × {} pixels of {} channels", spec.width, spec.height, spec.depth,
-                                      spec.nchannels), "at most 65536 × 65536 are read");
+    throw Error(path, "",
+                fmt::format("{} × {} × {} pixels of {} channels", spec.width, spec.height, spec.depth, spec.nchannels),
+                "at most 65536 × 65536 are read");
   const bool encoded = spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.format.basetype == OIIO::TypeDesc::UINT16;
   Image image(spec.width, spec.height, spec.channelnames);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
@@ -102,8 +103,8 @@ void write_image(const std::string& path, const Image& image, bool full_float) {
   if (extension != "exr" && extension != "png" && extension != "hdr")
     throw Error(path, "", fmt::format("the extension '{}' names no image format", extension), "write .exr, .png or .hdr");
   if (image.width <= 0 || image.height <= 0 || image.channels.empty() ||
-      image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
-                                 image.channel_count())
+      image.pixels.size() !=
+          static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * image.channel_count())
     throw Error(path, "", "an empty image, or one whose pixels do not match its size", "");
   io::AtomicFile file(path);
 

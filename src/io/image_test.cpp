@@ -45,8 +45,7 @@ TEST(Images, ExrIsHalfByDefault) {
 // Half-transparent colors must neither be multiplied nor divided by their alpha on the way.
 TEST(Images, PngKeepsWhatItIsGiven) {
   const TemporaryFolder folder;
-  for (const std::vector<std::string>& channels :
-       {std::vector<std::string>{"Y"}, {"R", "G", "B"}, {"R", "G", "B", "A"}}) {
+  for (const std::vector<std::string>& channels : {std::vector<std::string>{"Y"}, {"R", "G", "B"}, {"R", "G", "B", "A"}}) {
     const Image image = pattern(channels);
     for (const bool sixteen : {false, true}) {
       write_image(folder / "a.png", image, sixteen);

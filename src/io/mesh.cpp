@@ -63,8 +63,7 @@ void complete_normals(TriangleMesh& mesh) {
     const Vec3 p[3] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     const Vec3 face = normalize(cross(p[1] - p[0], p[2] - p[0]));
     if (!is_unit(face)) continue;
-    for (int c = 0; c < 3; ++c)
-      sum[leader[t[c]]] += face * angle_between(p[(c + 1) % 3] - p[c], p[(c + 2) % 3] - p[c]);
+    for (int c = 0; c < 3; ++c) sum[leader[t[c]]] += face * angle_between(p[(c + 1) % 3] - p[c], p[(c + 2) % 3] - p[c]);
   }
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
     if (is_unit(mesh.normals[i])) continue;

@@ -17,8 +17,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-constexpr std::size_t kMaxDepth = 256;             // of nodes
-constexpr std::size_t kMaxVertices = 1u << 26;     // of all instances together: about 2 GiB
+constexpr std::size_t kMaxDepth = 256;          // of nodes
+constexpr std::size_t kMaxVertices = 1u << 26;  // of all instances together: about 2 GiB
 enum ComponentType { kByte = 5120, kUnsignedByte, kShort, kUnsignedShort, kUnsignedInt = 5125, kFloat };
 enum Mode { kTriangles = 4, kStrip, kFan };
 
@@ -248,9 +248,8 @@ class GlbReader {
     a.stride = integer(view, "byteStride", item_bytes);
     if (view_begin > binary_.size() || view_bytes > binary_.size() - view_begin)
       fail(place, fmt::format("its view ends after the {} bytes of the binary chunk", binary_.size()));
-    const bool fits = a.stride >= item_bytes &&
-                      (a.count == 0 || (begin <= view_bytes && item_bytes <= view_bytes - begin &&
-                                        a.count - 1 <= (view_bytes - begin - item_bytes) / a.stride));
+    const bool fits = a.stride >= item_bytes && (a.count == 0 || (begin <= view_bytes && item_bytes <= view_bytes - begin &&
+                                                                  a.count - 1 <= (view_bytes - begin - item_bytes) / a.stride));
     if (!fits) fail(place, fmt::format("{} items do not fit its view of {} bytes", a.count, view_bytes));
     a.data = binary_.data() + view_begin + begin;
     return a;

@@ -19,10 +19,10 @@ constexpr std::size_t kTypeBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
 
 std::optional<Type> type_of(std::string_view word) {
   constexpr std::pair<std::string_view, Type> kNames[] = {
-      {"char", Type::kInt8},    {"int8", Type::kInt8},    {"uchar", Type::kUint8},    {"uint8", Type::kUint8},
-      {"short", Type::kInt16},  {"int16", Type::kInt16},  {"ushort", Type::kUint16},  {"uint16", Type::kUint16},
-      {"int", Type::kInt32},    {"int32", Type::kInt32},  {"uint", Type::kUint32},    {"uint32", Type::kUint32},
-      {"float", Type::kFloat},  {"float32", Type::kFloat}, {"double", Type::kDouble}, {"float64", Type::kDouble}};
+      {"char", Type::kInt8},   {"int8", Type::kInt8},     {"uchar", Type::kUint8},   {"uint8", Type::kUint8},
+      {"short", Type::kInt16}, {"int16", Type::kInt16},   {"ushort", Type::kUint16}, {"uint16", Type::kUint16},
+      {"int", Type::kInt32},   {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
+      {"float", Type::kFloat}, {"float32", Type::kFloat}, {"double", Type::kDouble}, {"float64", Type::kDouble}};
   for (const auto& [name, type] : kNames)
     if (name == word) return type;
   return std::nullopt;
@@ -64,12 +64,9 @@ class PlyReader {
   TriangleMesh read() {
     read_header();
     for (const Element& element : elements_) {
-      if (element.name == "vertex")
-        read_vertices(element);
-      else if (element.name == "face")
-        read_faces(element);
-      else
-        skip(element);
+      if (element.name == "vertex") read_vertices(element);
+      else if (element.name == "face") read_faces(element);
+      else skip(element);
     }
     return std::move(mesh_);
   }
@@ -80,12 +77,9 @@ class PlyReader {
       std::vector<std::string_view> words;
       for (std::string_view word = split(line); !word.empty(); word = split(line)) words.push_back(word);
       if (words.empty()) continue;
-      if (words[0] == "format" && words.size() >= 2)
-        read_format(words[1]);
-      else if (words[0] == "element" && words.size() == 3)
-        elements_.push_back({std::string(words[1]), count(words[2]), {}});
-      else if (words[0] == "property")
-        read_property(words);
+      if (words[0] == "format" && words.size() >= 2) read_format(words[1]);
+      else if (words[0] == "element" && words.size() == 3) elements_.push_back({std::string(words[1]), count(words[2]), {}});
+      else if (words[0] == "property") read_property(words);
     }
     if (!formatted_) fail("no format line");
   }
@@ -117,7 +111,8 @@ class PlyReader {
   // Every item takes at least this much, so a count that the rest of the file cannot hold is refused at once.
   void check_count(const Element& element) const {
     std::uint64_t least = 0;
-    for (const Property& p : element.properties) least += ascii_ ? 2 : kTypeBytes[static_cast<int>(p.list_count.value_or(p.type))];
+    for (const Property& p : element.properties)
+      least += ascii_ ? 2 : kTypeBytes[static_cast<int>(p.list_count.value_or(p.type))];
     const std::uint64_t left = bytes_.size() - at_ + (ascii_ ? 1 : 0);
     if (least > 0 && element.count > left / least)
       fail(fmt::format("{} of element '{}' announced, {} bytes are left", element.count, element.name, bytes_.size() - at_));
@@ -134,10 +129,8 @@ class PlyReader {
     for (std::uint64_t i = 0; i < element.count; ++i) {
       float values[static_cast<int>(Role::kIndices) + 1] = {};
       for (const Property& p : element.properties) {
-        if (p.list_count)
-          skip_list(p);
-        else
-          values[static_cast<int>(p.role)] = static_cast<float>(number(p.type));
+        if (p.list_count) skip_list(p);
+        else values[static_cast<int>(p.role)] = static_cast<float>(number(p.type));
       }
       const auto value = [&](Role role) { return values[static_cast<int>(role)]; };
       mesh_.positions[i] = {value(Role::kX), value(Role::kY), value(Role::kZ)};
@@ -150,12 +143,9 @@ class PlyReader {
     check_count(element);
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
       for (const Property& p : element.properties) {
-        if (!p.list_count)
-          number(p.type);
-        else if (p.role == Role::kIndices)
-          read_polygon(p);
-        else
-          skip_list(p);
+        if (!p.list_count) number(p.type);
+        else if (p.role == Role::kIndices) read_polygon(p);
+        else skip_list(p);
       }
   }
 
@@ -176,10 +166,8 @@ class PlyReader {
     check_count(element);
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
       for (const Property& p : element.properties) {
-        if (p.list_count)
-          skip_list(p);
-        else
-          number(p.type);
+        if (p.list_count) skip_list(p);
+        else number(p.type);
       }
   }
 

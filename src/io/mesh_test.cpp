@@ -16,9 +16,7 @@ namespace {
 using kit::TemporaryFolder;
 using Triangle = std::array<std::uint32_t, 3>;
 
-TriangleMesh read_bytes(const std::string& bytes) {
-  return read_mesh(ByteSource("mesh", std::as_bytes(std::span(bytes))));
-}
+TriangleMesh read_bytes(const std::string& bytes) { return read_mesh(ByteSource("mesh", std::as_bytes(std::span(bytes)))); }
 
 std::string error_of(const std::string& bytes) {
   try {
@@ -198,17 +196,20 @@ TEST(PlyMesh, ErrorsAndTruncation) {
 // One triangle under two nodes: scaled, turned and shifted; and mirrored, so that its winding must turn.
 std::string glb(const std::string& nodes, const std::string& indices = "", bool short_uv = false) {
   std::string binary = raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + raw<std::uint16_t>({0, 65535, 65535, 0, 0, 0}) + indices;
-  std::string json =
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
-      R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1})" +
-      (indices.empty() ? "" : R"(,"indices":2)") + R"(}]}],"accessors":[
+  std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
+                     R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1})" +
+                     (indices.empty() ? "" : R"(,"indices":2)") + R"(}]}],"accessors":[
         {"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
-        {"bufferView":1,"componentType":5123,"normalized":true,"count":)" + (short_uv ? "4" : "3") + R"(,"type":"VEC2"},
+        {"bufferView":1,"componentType":5123,"normalized":true,"count":)" +
+                     (short_uv ? "4" : "3") + R"(,"type":"VEC2"},
         {"bufferView":2,"componentType":)" +
-      (indices.size() == 3 ? "5121" : indices.size() == 6 ? "5123" : "5125") + R"(,"count":3,"type":"SCALAR"}],
+                     (indices.size() == 3   ? "5121"
+                      : indices.size() == 6 ? "5123"
+                                            : "5125") +
+                     R"(,"count":3,"type":"SCALAR"}],
       "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12},
-        {"buffer":0,"byteOffset":48,"byteLength":)" + std::to_string(indices.size()) + R"(}],"buffers":[{"byteLength":)" +
-      std::to_string(binary.size()) + "}]}";
+        {"buffer":0,"byteOffset":48,"byteLength":)" +
+                     std::to_string(indices.size()) + R"(}],"buffers":[{"byteLength":)" + std::to_string(binary.size()) + "}]}";
   json.resize((json.size() + 3) / 4 * 4, ' ');
   binary.resize((binary.size() + 3) / 4 * 4, '\0');
   const auto u = [](std::size_t value) { return raw<std::uint32_t>({static_cast<std::uint32_t>(value)}); };
@@ -218,8 +219,8 @@ std::string glb(const std::string& nodes, const std::string& indices = "", bool 
 const char* const kPlainNode = R"([{"mesh":0}])";
 
 TEST(GlbMesh, IndicesOfEveryWidthAndNone) {
-  for (const std::string& indices : {std::string(), raw<std::uint8_t>({2, 0, 1}), raw<std::uint16_t>({2, 0, 1}),
-                                     raw<std::uint32_t>({2, 0, 1})}) {
+  for (const std::string& indices :
+       {std::string(), raw<std::uint8_t>({2, 0, 1}), raw<std::uint16_t>({2, 0, 1}), raw<std::uint32_t>({2, 0, 1})}) {
     const TriangleMesh mesh = read_bytes(glb(kPlainNode, indices));
     ASSERT_EQ(mesh.triangles.size(), 1u);
     EXPECT_EQ(mesh.triangles[0], indices.empty() ? (Triangle{0, 1, 2}) : (Triangle{2, 0, 1}));
@@ -287,7 +288,8 @@ TEST(TfxMesh, ErrorsAndTruncation) {
     text.replace(text.find(what), what.size(), instead);
     return error_of(text);
   };
-  EXPECT_NE(with("0 0 1 2", "0 0 1 3").find("line 13: '3' is none of the 3 vertices"), std::string::npos) << with("0 0 1 2", "0 0 1 3");
+  EXPECT_NE(with("0 0 1 2", "0 0 1 3").find("line 13: '3' is none of the 3 vertices"), std::string::npos)
+      << with("0 0 1 2", "0 0 1 3");
   EXPECT_NE(with("numOfVertices 3", "numOfVertices 4000000000").find("more than the rest of the file"), std::string::npos);
   EXPECT_NE(with("1 1 0 0", "2 1 0 0").find("row 1 is due"), std::string::npos);
   EXPECT_NE(with("1e0", "1e99").find("'1e99' is no number"), std::string::npos);

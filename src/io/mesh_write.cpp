@@ -19,8 +19,10 @@ void write_obj(AtomicFile& file, const TriangleMesh& mesh) {
 }
 
 void write_ply(AtomicFile& file, const TriangleMesh& mesh) {
-  file.write(fmt::format("ply\nformat binary_little_endian 1.0\ncomment Pelage; meters, Y up\nelement vertex {}\n"
-                         "property float x\nproperty float y\nproperty float z\n", mesh.positions.size()));
+  file.write(
+      fmt::format("ply\nformat binary_little_endian 1.0\ncomment Pelage; meters, Y up\nelement vertex {}\n"
+                  "property float x\nproperty float y\nproperty float z\n",
+                  mesh.positions.size()));
   if (!mesh.normals.empty()) file.write("property float nx\nproperty float ny\nproperty float nz\n");
   if (!mesh.uv.empty()) file.write("property float u\nproperty float v\n");
   file.write(fmt::format("element face {}\nproperty list uchar uint vertex_indices\nend_header\n", mesh.triangles.size()));

@@ -88,8 +88,8 @@ void choose_scale(const FileStrands& file, const ImportOptions& options, ImportR
   if (unit == std::end(kUnits)) --unit;
   report.scale = unit->scale;
   report.scale_guessed = true;
-  report.notes.push_back(fmt::format("taken as {}: the groom is then {:.3g} m across; --scale overrides it", unit->name,
-                                     size * unit->scale));
+  report.notes.push_back(
+      fmt::format("taken as {}: the groom is then {:.3g} m across; --scale overrides it", unit->name, size * unit->scale));
 }
 
 void choose_up(const FileStrands& file, const ImportOptions& options, ImportReport& report) {
@@ -143,17 +143,21 @@ void choose_widths(FileStrands& file, const ImportOptions& options, ImportReport
     report.width_guessed = !(options.default_width > 0);
     const float width = report.width_guessed ? guess_width(file.strands, report.scale) : options.default_width;
     if (report.width_guessed && !widths.empty() && widths[0] != 0)
-      report.notes.push_back(fmt::format("the default thickness of the file, {} units, is no width of a hair; "
-                                         "{:.3g} mm assumed; --width overrides it", widths[0], width * 1e3f));
+      report.notes.push_back(
+          fmt::format("the default thickness of the file, {} units, is no width of a hair; "
+                      "{:.3g} mm assumed; --width overrides it",
+                      widths[0], width * 1e3f));
     else if (report.width_guessed && width > kHumanHair)
-      report.notes.push_back(fmt::format("no widths in the file: {:.3g} mm assumed, so that strands this few cover "
-                                         "(hair is 0.05 to 0.1 mm); --width overrides it", width * 1e3f));
+      report.notes.push_back(
+          fmt::format("no widths in the file: {:.3g} mm assumed, so that strands this few cover "
+                      "(hair is 0.05 to 0.1 mm); --width overrides it",
+                      width * 1e3f));
     widths.assign(1, width);
     return;
   }
   if (absurd)
-    report.notes.push_back(fmt::format("the strands are {:.3g} mm wide (hair is 0.05 to 0.1 mm); is --scale right?",
-                                       median * 1e3f));
+    report.notes.push_back(
+        fmt::format("the strands are {:.3g} mm wide (hair is 0.05 to 0.1 mm); is --scale right?", median * 1e3f));
   for (float& width : widths) width *= report.scale;
 }
 

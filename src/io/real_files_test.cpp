@@ -101,7 +101,8 @@ TEST(RealFiles, TfxMeshes) {
 }
 
 TEST(RealFiles, Environments) {
-  const std::pair<const char*, float> maps[] = {{"env/studio.hdr", 3568.f}, {"env/sunset.hdr", 2176.f}, {"env/forest.hdr", 74.5f}};
+  const std::pair<const char*, float> maps[] = {
+      {"env/studio.hdr", 3568.f}, {"env/sunset.hdr", 2176.f}, {"env/forest.hdr", 74.5f}};
   for (const auto& [name, largest] : maps) {
     PELAGE_NEEDS(path, name);
     const Image map = read_image(path);
@@ -122,9 +123,11 @@ TEST(RealFiles, Environments) {
 }
 
 TEST(RealFiles, ObjMeshes) {
-  const std::pair<const char*, std::size_t> meshes[] = {{"meshes/sintel.obj", 5952}, {"meshes/sintel-eyes.obj", 1408},
+  const std::pair<const char*, std::size_t> meshes[] = {{"meshes/sintel.obj", 5952},
+                                                        {"meshes/sintel-eyes.obj", 1408},
                                                         {"meshes/sintel-eyelashes.obj", 192},
-                                                        {"meshes/sintel-collider.obj", 678}, {"meshes/spot.obj", 5856}};
+                                                        {"meshes/sintel-collider.obj", 678},
+                                                        {"meshes/spot.obj", 5856}};
   for (const auto& [name, triangles] : meshes) {
     PELAGE_NEEDS(path, name);
     EXPECT_EQ(read_mesh(path).triangles.size(), triangles) << name;

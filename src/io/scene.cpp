@@ -52,7 +52,8 @@ class Loader {
     if (!text.shape.empty() && text.shape != "mannequin")
       fail(place + "/shape", fmt::format("unknown value `{}`", text.shape), "did you mean `mannequin`?");
     MeshInstance mesh = text.instance;
-    mesh.mesh = std::make_shared<TriangleMesh>(text.file.empty() ? mannequin_head() : read_mesh(file(text.file), text.scale, text.up));
+    mesh.mesh =
+        std::make_shared<TriangleMesh>(text.file.empty() ? mannequin_head() : read_mesh(file(text.file), text.scale, text.up));
     if (!text.texture.empty()) mesh.texture = std::make_shared<Image>(read_image(file(text.texture)));
     mesh.transform = to_affine(text.transform);
     return mesh;
@@ -63,9 +64,9 @@ class Loader {
     require_one(place, "file", !text.file.empty(), "grow", text.grow.has_value());
     GroomInstance groom = text.instance;
     groom.transform = to_affine(text.transform);
-    groom.strands = std::make_shared<StrandSet>(
-        text.grow ? grow(text.grow->settings, surface(text.grow->surface, place, meshes), progress_)
-                  : read_strands(file(text.file), text.import, nullptr, progress_));
+    groom.strands =
+        std::make_shared<StrandSet>(text.grow ? grow(text.grow->settings, surface(text.grow->surface, place, meshes), progress_)
+                                              : read_strands(file(text.file), text.import, nullptr, progress_));
     return groom;
   }
 
@@ -76,7 +77,8 @@ class Loader {
       known.push_back(mesh.name);
     }
     if (name != "mannequin")
-      fail(place + "/grow/surface", fmt::format("no mesh has the name `{}`", name), fmt::format("did you mean `{}`?", nearest_name(name, known)));
+      fail(place + "/grow/surface", fmt::format("no mesh has the name `{}`", name),
+           fmt::format("did you mean `{}`?", nearest_name(name, known)));
     return mannequin_head();
   }
 

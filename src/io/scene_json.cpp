@@ -201,7 +201,8 @@ void check_keys(const JsonValue& value, const std::vector<std::string>& known, c
 std::size_t choice_index(const JsonValue& value, const std::vector<std::string>& names) {
   const auto found = std::find(names.begin(), names.end(), value.text());
   if (found == names.end())
-    value.fail(fmt::format("unknown value `{}`", value.text()), fmt::format("did you mean `{}`?", nearest_name(value.text(), names)));
+    value.fail(fmt::format("unknown value `{}`", value.text()),
+               fmt::format("did you mean `{}`?", nearest_name(value.text(), names)));
   return static_cast<std::size_t>(found - names.begin());
 }
 

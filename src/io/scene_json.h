@@ -109,26 +109,30 @@ Schema object_schema(const Fields<T>& fields) {
 
 template <class T>
 Field<T> number_field(std::string key, const char* about, float T::*member, double least, double most, double scale = 1) {
-  return {std::move(key), {{"description", about}, {"type", "number"}, {"minimum", least}, {"maximum", most}},
+  return {std::move(key),
+          {{"description", about}, {"type", "number"}, {"minimum", least}, {"maximum", most}},
           [=](const JsonValue& v, T& out) { out.*member = static_cast<float>(v.number(least, most) * scale); }};
 }
 
 template <class T, class Integer>
 Field<T> integer_field(std::string key, const char* about, Integer T::*member, long long least, long long most) {
-  return {std::move(key), {{"description", about}, {"type", "integer"}, {"minimum", least}, {"maximum", most}},
+  return {std::move(key),
+          {{"description", about}, {"type", "integer"}, {"minimum", least}, {"maximum", most}},
           [=](const JsonValue& v, T& out) { out.*member = static_cast<Integer>(v.integer(least, most)); }};
 }
 
 template <class T>
 Field<T> boolean_field(std::string key, const char* about, bool T::*member) {
-  return {std::move(key), {{"description", about}, {"type", "boolean"}},
-          [=](const JsonValue& v, T& out) { out.*member = v.boolean(); }};
+  return {std::move(key), {{"description", about}, {"type", "boolean"}}, [=](const JsonValue& v, T& out) {
+            out.*member = v.boolean();
+          }};
 }
 
 template <class T>
 Field<T> text_field(std::string key, const char* about, std::string T::*member) {
-  return {std::move(key), {{"description", about}, {"type", "string"}},
-          [=](const JsonValue& v, T& out) { out.*member = v.text(); }};
+  return {std::move(key), {{"description", about}, {"type", "string"}}, [=](const JsonValue& v, T& out) {
+            out.*member = v.text();
+          }};
 }
 
 Schema vector_schema(const char* about, double least, double most);
@@ -155,8 +159,9 @@ std::vector<std::string> keys_of(const Names<Enum>& names) {
 template <class T, class Enum>
 Field<T> choice_field(std::string key, const char* about, Enum T::*member, const Names<Enum>& names) {
   const std::vector<std::string> keys = keys_of(names);
-  return {std::move(key), {{"description", about}, {"enum", keys}},
-          [=](const JsonValue& v, T& out) { out.*member = names[choice_index(v, keys)].second; }};
+  return {std::move(key), {{"description", about}, {"enum", keys}}, [=](const JsonValue& v, T& out) {
+            out.*member = names[choice_index(v, keys)].second;
+          }};
 }
 
 template <class T, class U>
@@ -168,7 +173,8 @@ Field<T> object_field(std::string key, const char* about, U T::*member, const Fi
 
 template <class T, class U>
 Field<T> list_field(std::string key, const char* about, std::vector<U> T::*member, const Fields<U>& fields) {
-  return {std::move(key), {{"description", about}, {"type", "array"}, {"items", object_schema(fields)}},
+  return {std::move(key),
+          {{"description", about}, {"type", "array"}, {"items", object_schema(fields)}},
           [=, &fields](const JsonValue& v, T& out) {
             (out.*member).clear();
             for (const JsonValue& element : v.elements()) read_object(element, fields, (out.*member).emplace_back());

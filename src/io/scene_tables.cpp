@@ -6,7 +6,7 @@
 namespace pelage::io {
 namespace {
 
-constexpr double kFar = 1e6;        // metres
+constexpr double kFar = 1e6;  // metres
 constexpr double kBright = 1e9;
 constexpr double kDegree = 3.14159265358979 / 180;
 
@@ -48,11 +48,12 @@ const Fields<Light>& light_fields() {
       choice_field("type", "Kind of light", &Light::type, types).required(),
       text_field("name", "For people", &Light::name),
       vector_field("position", "Point and spot lights: meters", &Light::position, -kFar, kFar),
-      vector_field("direction", "Spot and directional lights: where the light travels; any length but zero",
-                   &Light::direction, -kFar, kFar),
+      vector_field("direction", "Spot and directional lights: where the light travels; any length but zero", &Light::direction,
+                   -kFar, kFar),
       vector_field("intensity", "RGB; point and spot: W/sr; directional: irradiance, W/m²", &Light::intensity, 0, kBright),
       number_field("inner_angle", "Spot: degrees from the axis up to which it is full", &Light::inner_angle, 0, 89, kDegree),
-      number_field("outer_angle", "Spot: degrees from the axis from which it is dark", &Light::outer_angle, 0.01, 89.9, kDegree),
+      number_field("outer_angle", "Spot: degrees from the axis from which it is dark", &Light::outer_angle, 0.01, 89.9,
+                   kDegree),
       boolean_field("casts_shadow", "Whether hair and meshes shade this light", &Light::casts_shadow),
   };
   return table;
@@ -65,7 +66,8 @@ const Fields<EnvironmentText>& environment_fields() {
       nested(part, vector_field("radiance", "RGB, W/(m²·sr); multiplies the map where there is one", &E::radiance, 0, kBright)),
       text_field("map", "Latitude-longitude image file, relative to the scene file; top row up, middle column −Z",
                  &EnvironmentText::map),
-      nested(part, number_field("rotation", "Degrees about +Y, counter-clockwise from above", &E::rotation, -3600, 3600, kDegree)),
+      nested(part,
+             number_field("rotation", "Degrees about +Y, counter-clockwise from above", &E::rotation, -3600, 3600, kDegree)),
       nested(part, boolean_field("visible", "Shown behind the scene instead of the background color", &E::visible)),
   };
   return table;
@@ -106,11 +108,13 @@ const Fields<GrowText>& grow_fields() {
   constexpr auto part = &GrowText::settings;
   static const Fields<GrowText> table{
       // First in the table: sets the defaults that the other keys change.
-      {"style", {{"description", "Chooses the defaults of the other keys"}, {"enum", hair_style_names()}},
+      {"style",
+       {{"description", "Chooses the defaults of the other keys"}, {"enum", hair_style_names()}},
        [](const JsonValue& v, GrowText& out) {
          choice_index(v, hair_style_names());
          out.settings = grow_defaults(hair_style_from_name(v.text()));
-       }, true},
+       },
+       true},
       text_field("surface", "\"mannequin\", or the name of a mesh of the scene", &GrowText::surface),
       nested(part, integer_field("seed", "Another seed, another head of hair", &G::seed, 0, INT64_MAX)),
       nested(part, integer_field("strands", "Number of strands", &G::strands, 1, 1000000)),
@@ -121,7 +125,8 @@ const Fields<GrowText>& grow_fields() {
       nested(part, number_field("width_variation", "Standard deviation as a share of the width", &G::width_variation, 0, 1)),
       nested(part, number_field("taper", "Share of the width that is gone at the tip", &G::taper, 0, 1)),
       nested(part, number_field("curl_radius", "Mean radius of curls or amplitude of waves, meters", &G::curl_radius, 0, 1)),
-      nested(part, number_field("curl_pitch", "Mean distance along a lock in which it turns once, meters", &G::curl_pitch, 1e-4, 10)),
+      nested(part,
+             number_field("curl_pitch", "Mean distance along a lock in which it turns once, meters", &G::curl_pitch, 1e-4, 10)),
       nested(part, integer_field("clumps", "Number of clumps; 0 none", &G::clumps, 0, 1000000)),
       nested(part, number_field("clump_tightness", "0 none … 1 tips meet", &G::clump_tightness, 0, 1)),
       nested(part, number_field("frizz", "Small-scale noise", &G::frizz, 0, 1)),
@@ -136,7 +141,8 @@ const Fields<GrowText>& grow_fields() {
 
 const Fields<HairMaterial>& material_fields() {
   using M = HairMaterial;
-  static const Names<M::Model> models{{"kajiya-kay", M::Model::kKajiyaKay}, {"marschner", M::Model::kMarschner}, {"zhu", M::Model::kZhu}};
+  static const Names<M::Model> models{
+      {"kajiya-kay", M::Model::kKajiyaKay}, {"marschner", M::Model::kMarschner}, {"zhu", M::Model::kZhu}};
   static const Names<M::ColorSource> sources{
       {"melanin", M::ColorSource::kMelanin}, {"rgb", M::ColorSource::kRgb}, {"strand", M::ColorSource::kStrand}};
   Field<M> color = vector_field("color", "Linear color of a dense tuft; sets color_source to rgb", &M::color, 0, 1);
@@ -166,9 +172,11 @@ const Fields<GroomText>& groom_fields() {
       nested(part, text_field("name", "For people", &G::name)),
       text_field("file", "Groom file, relative to the scene file", &GroomText::file),
       optional_object_field("grow", "Made from a seed instead of a file", &GroomText::grow, grow_fields()),
-      nested(&GroomText::import, number_field("scale", "Meters per unit of the file; guessed without it", &ImportOptions::scale, 1e-9, 1e9)),
+      nested(&GroomText::import,
+             number_field("scale", "Meters per unit of the file; guessed without it", &ImportOptions::scale, 1e-9, 1e9)),
       nested(&GroomText::import, choice_field("up", "Which axis of the file points up", &ImportOptions::up, kUpAxes)),
-      nested(&GroomText::import, number_field("default_width", "Meters, for files without widths", &ImportOptions::default_width, 1e-7, 0.1)),
+      nested(&GroomText::import,
+             number_field("default_width", "Meters, for files without widths", &ImportOptions::default_width, 1e-7, 0.1)),
       nested(part, object_field("material", "How a strand scatters light", &G::material, material_fields())),
       object_field("transform", "Object to world", &GroomText::transform, transform_fields()),
       nested(part, number_field("width_scale", "Multiplies every width", &G::width_scale, 1e-6, 1e6)),
@@ -179,14 +187,15 @@ const Fields<GroomText>& groom_fields() {
 const Fields<RenderSettings>& settings_fields() {
   using S = RenderSettings;
   static const Names<AlphaSource> alphas{{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}};
-  static const Names<View> views{{"beauty", View::kBeauty}, {"strand-id", View::kStrandId}, {"u", View::kU},
-                                 {"tangent", View::kTangent}, {"depth", View::kDepth}, {"coverage", View::kCoverage},
+  static const Names<View> views{{"beauty", View::kBeauty},     {"strand-id", View::kStrandId}, {"u", View::kU},
+                                 {"tangent", View::kTangent},   {"depth", View::kDepth},        {"coverage", View::kCoverage},
                                  {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo}};
   static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};
   static const Fields<S> table{
       integer_field("width", "Pixels", &S::width, 1, 16384),
       integer_field("height", "Pixels", &S::height, 1, 16384),
-      {"samples", {{"description", "Per pixel"}, {"enum", {1, 2, 4, 8, 16}}},
+      {"samples",
+       {{"description", "Per pixel"}, {"enum", {1, 2, 4, 8, 16}}},
        [](const JsonValue& v, S& out) {
          const long long n = v.integer(1, 16);
          if (n & (n - 1)) v.fail(std::to_string(n) + " samples per pixel", "1, 2, 4, 8 or 16");
@@ -212,7 +221,10 @@ const Fields<SceneText>& scene_fields() {
   static const Fields<SceneText> table{
       text_field("$schema", "For editors", &SceneText::schema),
       optional_object_field("camera", "Frames the grooms when absent", &SceneText::camera, camera_fields()),
-      {"lights", {{"description", "A three-point light when neither lights nor environment are given"}, {"type", "array"}, {"items", object_schema(light_fields())}},
+      {"lights",
+       {{"description", "A three-point light when neither lights nor environment are given"},
+        {"type", "array"},
+        {"items", object_schema(light_fields())}},
        [](const JsonValue& v, SceneText& out) {
          out.lights.emplace();
          for (const JsonValue& light : v.elements()) read_object(light, light_fields(), out.lights->emplace_back());

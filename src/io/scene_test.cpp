@@ -17,7 +17,8 @@ namespace {
 class SceneFile : public testing::Test {
  protected:
   SceneFile() {
-    folder_ = std::filesystem::path(testing::TempDir()) / ("scene_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("scene_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     std::filesystem::create_directories(folder_);
   }
   ~SceneFile() override { std::filesystem::remove_all(folder_); }
@@ -123,7 +124,8 @@ TEST_F(SceneFile, WrongValuesAreTold) {
       {R"({"settings": {"width": 0}})", "line 1: /settings/width: 0 is out of range (from 1 to 16384)"},
       {R"({"settings": {"width": 1.5}})", "line 1: /settings/width: number where a whole number is expected"},
       {R"({"settings": {"width": 99999999999999999999}})", "line 1: /settings/width: number where a whole number is expected"},
-      {R"({"settings": {"width": 18446744073709551615}})", "line 1: /settings/width: 18446744073709551615 is out of range (from 1 to 16384)"},
+      {R"({"settings": {"width": 18446744073709551615}})",
+       "line 1: /settings/width: 18446744073709551615 is out of range (from 1 to 16384)"},
       {R"({"settings": {"samples": 3}})", "line 1: /settings/samples: 3 samples per pixel (1, 2, 4, 8 or 16)"},
       {R"({"settings": {"view": "dept"}})", "line 1: /settings/view: unknown value `dept` (did you mean `depth`?)"},
       {R"({"settings": {"shadows": 1}})", "line 1: /settings/shadows: number where true or false is expected"},
@@ -132,7 +134,8 @@ TEST_F(SceneFile, WrongValuesAreTold) {
       {R"({"settings": []})", "line 1: /settings: array where an object is expected"},
       {R"({"camera": {"eye": [0, 0, 1]}})", "line 1: /camera: the key `target` is missing"},
       {R"({"lights": [{"type": "directional", "direction": [0, 0, 0]}]})", "/lights/0/direction: no direction"},
-      {R"({"lights": [{"type": "spot", "inner_angle": 30, "outer_angle": 20}]})", "/lights/0/outer_angle: not greater than inner_angle"},
+      {R"({"lights": [{"type": "spot", "inner_angle": 30, "outer_angle": 20}]})",
+       "/lights/0/outer_angle: not greater than inner_angle"},
       {R"({"grooms": [{}]})", "/grooms/0: neither `file` and `grow` (give exactly one of them)"},
       {R"({"grooms": [{"grow": {"style": "curly", "surface": "hed"}}], "meshes": [{"name": "head", "shape": "mannequin"}]})",
        "/grooms/0/grow/surface: no mesh has the name `hed` (did you mean `head`?)"},

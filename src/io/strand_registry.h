@@ -14,12 +14,12 @@ namespace pelage::io {
 
 /// What a reader found, still in the units and axes of the file; place_strands() makes metres and Y up of it.
 struct FileStrands {
-  StrandSet strands;                     ///< widths empty: the file has none
-  float scale = 0;                       ///< metres per unit where the file says so, else 0
-  UpAxis up = UpAxis::kY;                ///< what the file says, or the habit of the format
-  bool up_stated = false;                ///< the file says so
-  bool up_varies = false;                ///< files of this format come with either axis up: look at the strands
-  bool width_is_fallback = false;        ///< the one width is a header's default that exporters leave unset
+  StrandSet strands;               ///< widths empty: the file has none
+  float scale = 0;                 ///< metres per unit where the file says so, else 0
+  UpAxis up = UpAxis::kY;          ///< what the file says, or the habit of the format
+  bool up_stated = false;          ///< the file says so
+  bool up_varies = false;          ///< files of this format come with either axis up: look at the strands
+  bool width_is_fallback = false;  ///< the one width is a header's default that exporters leave unset
   std::vector<std::string> notes;
 };
 

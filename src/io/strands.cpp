@@ -14,8 +14,7 @@ namespace pelage {
 
 namespace io {
 
-StrandSet read_strands(const ByteSource& source, const ImportOptions& options, ImportReport* report,
-                       const Progress& progress) {
+StrandSet read_strands(const ByteSource& source, const ImportOptions& options, ImportReport* report, const Progress& progress) {
   ImportReport own;
   ImportReport& told = report ? *report : own;
   told = {};
@@ -35,8 +34,7 @@ StrandSet read_strands(const ByteSource& source, const ImportOptions& options, I
 
 }  // namespace io
 
-StrandSet read_strands(const std::string& path, const ImportOptions& options, ImportReport* report,
-                       const Progress& progress) {
+StrandSet read_strands(const std::string& path, const ImportOptions& options, ImportReport* report, const Progress& progress) {
   return io::read_strands(io::ByteSource::open(path), options, report, progress);
 }
 
@@ -57,12 +55,12 @@ const io::StrandFormat& format_for_writing(const std::string& path, const std::s
   for (const io::StrandFormat* format : io::strand_registry()) {
     const std::vector<std::string>& ends = format->info.extensions;
     if (!format->info.writes) continue;
-    if (name.empty() ? std::find(ends.begin(), ends.end(), extension) != ends.end() : format->info.name == name)
-      return *format;
+    if (name.empty() ? std::find(ends.begin(), ends.end(), extension) != ends.end() : format->info.name == name) return *format;
     known += fmt::format("{}{} (.{})", known.empty() ? "" : ", ", format->info.name, ends.front());
   }
-  throw Error(path, "", name.empty() ? fmt::format("the extension '{}' names no groom format", extension)
-                                     : fmt::format("unknown groom format '{}'", name),
+  throw Error(path, "",
+              name.empty() ? fmt::format("the extension '{}' names no groom format", extension)
+                           : fmt::format("unknown groom format '{}'", name),
               "known: " + known);
 }
 

@@ -67,8 +67,8 @@ void read_offsets(const ByteSource& source, const Header& h, std::uint64_t begin
   for (std::uint32_t s = 0; s < h.strands; ++s) {
     const std::size_t in_chunk = s % std::max<std::size_t>(segments.size(), 1);
     if ((h.flags & kHasSegments) && in_chunk == 0)
-      source.read(begin + 2 * std::uint64_t{s}, 2 * std::min<std::size_t>(segments.size(), h.strands - s),
-                  segments.data(), "segment counts");
+      source.read(begin + 2 * std::uint64_t{s}, 2 * std::min<std::size_t>(segments.size(), h.strands - s), segments.data(),
+                  "segment counts");
     const std::uint64_t count = (h.flags & kHasSegments ? segments[in_chunk] : h.default_segments) + std::uint64_t{1};
     if (sum + count > h.points)
       throw Error(source.name(), fmt::format("strand {}", s),
@@ -83,8 +83,8 @@ void read_offsets(const ByteSource& source, const Header& h, std::uint64_t begin
 }
 
 template <class T>
-void read_array(const ByteSource& source, std::uint64_t begin, std::size_t count, std::vector<T>& array,
-                const char* what, const Progress& progress) {
+void read_array(const ByteSource& source, std::uint64_t begin, std::size_t count, std::vector<T>& array, const char* what,
+                const Progress& progress) {
   array.resize(count);
   for (std::size_t i = 0; i < count; i += kChunk / sizeof(T)) {
     const std::size_t n = std::min(kChunk / sizeof(T), count - i);
@@ -113,8 +113,7 @@ FileStrands read(const ByteSource& source, const Progress& progress) {
   }
   if (h.flags & kHasTransparency)
     read_array(source, at.transparency, h.points, set.transparency, "transparency array", progress);
-  else if (h.default_transparency > 0 && h.default_transparency <= 1)
-    set.transparency.assign(h.points, h.default_transparency);
+  else if (h.default_transparency > 0 && h.default_transparency <= 1) set.transparency.assign(h.points, h.default_transparency);
   if (h.flags & kHasColors) read_array(source, at.colors, h.points, set.colors, "color array", progress);
 
   file.up = UpAxis::kZ;
@@ -155,10 +154,10 @@ std::vector<std::string> write(AtomicFile& file, const StrandSet& set, const Pro
   std::vector<std::string> lost;
   for (std::size_t s = 0; s < set.strand_count(); ++s)
     if (set.offsets[s + 1] - set.offsets[s] > kMaxSegments + 1)
-      throw Error(file.path(), fmt::format("strand {}", s),
-                  fmt::format("{} points; a .hair strand holds at most {}", set.offsets[s + 1] - set.offsets[s],
-                              kMaxSegments + 1),
-                  "write .pelage");
+      throw Error(
+          file.path(), fmt::format("strand {}", s),
+          fmt::format("{} points; a .hair strand holds at most {}", set.offsets[s + 1] - set.offsets[s], kMaxSegments + 1),
+          "write .pelage");
   file.put(make_header(set, lost));
   for (std::size_t s = 0; s < set.strand_count(); ++s)
     file.put(static_cast<std::uint16_t>(set.offsets[s + 1] - set.offsets[s] - 1));

@@ -111,8 +111,9 @@ class Reader {
   void read_table() {
     header_ = source_.get<Header>(0, "header");
     if (header_.major != kMajor)
-      throw Error(source_.name(), "header", fmt::format("format version {}.{}; this program reads {}.x", header_.major,
-                                                        header_.minor, kMajor), "use a newer Pelage");
+      throw Error(source_.name(), "header",
+                  fmt::format("format version {}.{}; this program reads {}.x", header_.major, header_.minor, kMajor),
+                  "use a newer Pelage");
     if (header_.sections > kMaxSections) bad("header", fmt::format("{} sections announced", header_.sections));
     source_.require(sizeof(Header), header_.sections * sizeof(Section), "section table");
     table_.resize(header_.sections);
@@ -134,8 +135,8 @@ class Reader {
     std::vector<std::uint32_t> counts;
     read_section("counts", 1, counts, {header_.strands});
     if (counts.empty() && header_.strands * header_.points_per_strand != header_.points)
-      bad("header", fmt::format("{} strands of {} points each do not make {}", header_.strands,
-                                header_.points_per_strand, header_.points));
+      bad("header", fmt::format("{} strands of {} points each do not make {}", header_.strands, header_.points_per_strand,
+                                header_.points));
     offsets.resize(header_.strands + 1);
     std::uint64_t sum = 0;
     for (std::size_t s = 0; s < header_.strands; ++s) {
@@ -250,10 +251,8 @@ class Writer {
     counts_.resize(n);
     for (std::size_t s = 0; s < n; ++s) counts_[s] = set.offsets[s + 1] - set.offsets[s];
     const bool uniform = std::all_of(counts_.begin(), counts_.end(), [&](std::uint32_t c) { return c == counts_[0]; });
-    if (uniform)
-      header_.points_per_strand = n ? counts_[0] : 0;
-    else
-      add("counts", 1, counts_.data(), n, sizeof counts_[0]);
+    if (uniform) header_.points_per_strand = n ? counts_[0] : 0;
+    else add("counts", 1, counts_.data(), n, sizeof counts_[0]);
   }
 
   void add(std::string_view name, std::uint32_t components, const void* data, std::size_t count, std::size_t item) {

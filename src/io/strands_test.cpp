@@ -89,8 +89,7 @@ TEST(Strands, PelageKeepsEverythingBitForBit) {
 }
 
 TEST(Strands, PelageKeepsEveryBasisAndABareGroom) {
-  for (const CurveBasis basis :
-       {CurveBasis::kLinear, CurveBasis::kCatmullRom, CurveBasis::kBSpline, CurveBasis::kBezier}) {
+  for (const CurveBasis basis : {CurveBasis::kLinear, CurveBasis::kCatmullRom, CurveBasis::kBSpline, CurveBasis::kBezier}) {
     StrandSet set;
     set.points = kit::full_groom().points;
     set.offsets = {0, 4, 8, 12};
@@ -203,9 +202,8 @@ TEST(Strands, EveryTruncationIsAnErrorThatNamesThePlace) {
         const std::string message = error_of(whole.substr(0, n));
         ASSERT_NE(message, "") << format << " of " << n << " bytes was accepted";
         ASSERT_EQ(message.substr(0, 7), "groom: ");
-        const bool placed = std::any_of(std::begin(kPlaces), std::end(kPlaces), [&](const char* place) {
-          return message.find(place) != std::string::npos;
-        });
+        const bool placed = std::any_of(std::begin(kPlaces), std::end(kPlaces),
+                                        [&](const char* place) { return message.find(place) != std::string::npos; });
         ASSERT_TRUE(placed || n < 8) << message;
       }
     }

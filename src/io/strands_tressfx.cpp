@@ -49,8 +49,7 @@ std::string mismatch(const ByteSource& source) {
 
 // Calls store(i, record) for each of `count` records that begin at `offset`.
 template <class Record, class Store>
-void for_each_record(const ByteSource& source, std::uint64_t offset, std::size_t count, const char* what,
-                     const Store& store) {
+void for_each_record(const ByteSource& source, std::uint64_t offset, std::size_t count, const char* what, const Store& store) {
   std::vector<Record> chunk(std::min(count, kChunk));
   for (std::size_t begin = 0; begin < count; begin += chunk.size()) {
     const std::size_t n = std::min(chunk.size(), count - begin);
@@ -85,8 +84,7 @@ void read_points(const ByteSource& source, const Contents& h, std::vector<Vec3>&
   points.resize(h.points());
   for_each_record<Position>(source, h.positions, points.size(), "point array", [&](std::size_t i, const Position& p) {
     points[i] = {p.x, p.y, p.z};  // w, where there is one, is the inverse mass of the simulation
-    if (i % kChunk == 0)
-      tell(progress, "io.read", static_cast<double>(i) / static_cast<double>(points.size()), source.name());
+    if (i % kChunk == 0) tell(progress, "io.read", static_cast<double>(i) / static_cast<double>(points.size()), source.name());
   });
 }
 
@@ -96,10 +94,8 @@ FileStrands read_contents(const ByteSource& source, const Contents& h, const Pro
   StrandSet& set = file.strands;
   set.offsets.resize(h.strands + 1);
   for (std::uint64_t s = 0; s <= h.strands; ++s) set.offsets[s] = static_cast<std::uint32_t>(s * h.points_per_strand);
-  if (h.position_bytes == sizeof(Vec4))
-    read_points<Vec4>(source, h, set.points, progress);
-  else
-    read_points<Vec3>(source, h, set.points, progress);
+  if (h.position_bytes == sizeof(Vec4)) read_points<Vec4>(source, h, set.points, progress);
+  else read_points<Vec3>(source, h, set.points, progress);
   if (h.strand_uv) {
     set.root_uv.resize(h.strands);
     for_each_record<Vec2>(source, h.strand_uv, h.strands, "strand uv array",
@@ -107,15 +103,15 @@ FileStrands read_contents(const ByteSource& source, const Contents& h, const Pro
   }
   if (h.strand_thickness) {
     set.widths.resize(h.points());
-    for_each_record<float>(source, h.strand_thickness, h.strands, "strand thickness array",
-                           [&](std::size_t s, float width) {
-                             std::fill(set.widths.begin() + set.offsets[s], set.widths.begin() + set.offsets[s + 1], width);
-                           });
+    for_each_record<float>(source, h.strand_thickness, h.strands, "strand thickness array", [&](std::size_t s, float width) {
+      std::fill(set.widths.begin() + set.offsets[s], set.widths.begin() + set.offsets[s + 1], width);
+    });
   }
   if (h.vertex_color) {
     set.colors.resize(h.points());
-    for_each_record<Vec4>(source, h.vertex_color, h.points(), "vertex color array",
-                          [&](std::size_t i, const Vec4& c) { set.colors[i] = {c.x, c.y, c.z}; });
+    for_each_record<Vec4>(source, h.vertex_color, h.points(), "vertex color array", [&](std::size_t i, const Vec4& c) {
+      set.colors[i] = {c.x, c.y, c.z};
+    });
     file.notes.emplace_back("the alpha of the vertex colors was ignored");
   }
   if (h.vertex_uv) file.notes.emplace_back("texture coordinates along the strands were ignored");
@@ -124,14 +120,18 @@ FileStrands read_contents(const ByteSource& source, const Contents& h, const Pro
 
 FileStrands read(const ByteSource& source, const Progress& progress) {
   const Header h = source.get<Header>(0, "header");
-  return read_contents(source, {h.strands, h.points_per_strand, sizeof(Header), sizeof(Vec4), h.positions, h.strand_uv,
-                                h.strand_thickness, h.vertex_color, h.vertex_uv}, progress);
+  return read_contents(source,
+                       {h.strands, h.points_per_strand, sizeof(Header), sizeof(Vec4), h.positions, h.strand_uv,
+                        h.strand_thickness, h.vertex_color, h.vertex_uv},
+                       progress);
 }
 
 FileStrands read3(const ByteSource& source, const Progress& progress) {
   const Header3 h = source.get<Header3>(0, "header");
-  FileStrands file = read_contents(source, {h.strands, h.points_per_strand, sizeof(Header3), sizeof(Vec3), h.positions,
-                                            h.strand_uv, h.strand_thickness, h.vertex_color, h.vertex_uv}, progress);
+  FileStrands file = read_contents(source,
+                                   {h.strands, h.points_per_strand, sizeof(Header3), sizeof(Vec3), h.positions, h.strand_uv,
+                                    h.strand_thickness, h.vertex_color, h.vertex_uv},
+                                   progress);
   if (h.guide_strand) file.notes.emplace_back("guide indices were ignored");
   if (h.follow_strands)
     file.notes.push_back(fmt::format("the file asks for {} more strands around each; only its own are here", h.follow_strands));
@@ -159,8 +159,7 @@ std::vector<std::string> write(AtomicFile& file, const StrandSet& set, const Pro
   const auto place = [&](bool present, std::uint64_t bytes) {
     const std::uint64_t begin = present ? end : 0;
     if (present) end += bytes;
-    if (end > UINT32_MAX)
-      throw Error(file.path(), "", "TressFX cannot hold more than 4 GiB", "write .pelage");
+    if (end > UINT32_MAX) throw Error(file.path(), "", "TressFX cannot hold more than 4 GiB", "write .pelage");
     return static_cast<std::uint32_t>(begin);
   };
   h.positions = place(true, count * sizeof(Vec4));
@@ -194,7 +193,9 @@ std::vector<std::string> write(AtomicFile& file, const StrandSet& set, const Pro
 
 const StrandFormat kTressFx = {
     {"tressfx", "TressFX 4 binary, Y up, any unit; every strand has as many points", {"tfx"}, true, true},
-    mismatch<4>, read, write};
+    mismatch<4>,
+    read,
+    write};
 const StrandFormat kTressFx3 = {
     {"tressfx3", "TressFX 3 binary, Y up, any unit", {"tfx"}, true, false}, mismatch<3>, read3, nullptr};
 

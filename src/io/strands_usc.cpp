@@ -60,12 +60,13 @@ FileStrands read(const ByteSource& source, const Progress& progress) {
     source.read(at, m * sizeof(Vec3), set.points.data() + begin, "points of a strand");
     set.offsets.push_back(static_cast<std::uint32_t>(begin + m));
     if (found.bald) set.strand_id.push_back(static_cast<std::uint32_t>(s));
-    if (s % 1024 == 0)
-      tell(progress, "io.read", static_cast<double>(at) / static_cast<double>(source.size()), source.name());
+    if (s % 1024 == 0) tell(progress, "io.read", static_cast<double>(at) / static_cast<double>(source.size()), source.name());
   });
   if (found.bald)
-    file.notes.push_back(fmt::format("{} bald roots (strands of one point) were skipped; strand ids keep the numbering "
-                                     "of the file", found.bald));
+    file.notes.push_back(
+        fmt::format("{} bald roots (strands of one point) were skipped; strand ids keep the numbering "
+                    "of the file",
+                    found.bald));
   return file;
 }
 

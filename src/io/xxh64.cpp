@@ -17,9 +17,7 @@ T load(const unsigned char* data) {
   return value;
 }
 
-std::uint64_t round(std::uint64_t lane, std::uint64_t input) {
-  return std::rotl(lane + input * kPrime2, 31) * kPrime1;
-}
+std::uint64_t round(std::uint64_t lane, std::uint64_t input) { return std::rotl(lane + input * kPrime2, 31) * kPrime1; }
 
 std::uint64_t merge(std::uint64_t hash, std::uint64_t lane) { return (hash ^ round(0, lane)) * kPrime1 + kPrime4; }
 
@@ -55,8 +53,7 @@ std::uint64_t Xxh64::value() const {
   hash += total_;
   const unsigned char* rest = pending_;
   std::size_t left = pending_bytes_;
-  for (; left >= 8; rest += 8, left -= 8)
-    hash = std::rotl(hash ^ round(0, load<std::uint64_t>(rest)), 27) * kPrime1 + kPrime4;
+  for (; left >= 8; rest += 8, left -= 8) hash = std::rotl(hash ^ round(0, load<std::uint64_t>(rest)), 27) * kPrime1 + kPrime4;
   for (; left >= 4; rest += 4, left -= 4)
     hash = std::rotl(hash ^ (load<std::uint32_t>(rest) * kPrime1), 23) * kPrime2 + kPrime3;
   for (; left > 0; ++rest, --left) hash = std::rotl(hash ^ (*rest * kPrime5), 11) * kPrime1;

@@ -15,8 +15,8 @@ namespace wide {
 struct Int {
   hn::Vec<IntTag> v;
   HWY_INLINE Int() = default;
-  HWY_INLINE Int(hn::Vec<IntTag> a) : v(a) {}                    // NOLINT: implicit like int
-  HWY_INLINE Int(std::int32_t s) : v(hn::Set(IntTag(), s)) {}    // NOLINT
+  HWY_INLINE Int(hn::Vec<IntTag> a) : v(a) {}                  // NOLINT: implicit like int
+  HWY_INLINE Int(std::int32_t s) : v(hn::Set(IntTag(), s)) {}  // NOLINT
 };
 HWY_INLINE Int operator+(Int a, Int b) { return hn::Add(a.v, b.v); }
 HWY_INLINE Int operator-(Int a, Int b) { return hn::Sub(a.v, b.v); }

@@ -47,8 +47,8 @@ HWY_INLINE bool any(Mask a) { return !hn::AllFalse(FloatTag(), a.m); }
 struct Float {
   hn::Vec<FloatTag> v;
   HWY_INLINE Float() = default;
-  HWY_INLINE Float(hn::Vec<FloatTag> a) : v(a) {}                 // NOLINT: implicit like float
-  HWY_INLINE Float(float s) : v(hn::Set(FloatTag(), s)) {}        // NOLINT
+  HWY_INLINE Float(hn::Vec<FloatTag> a) : v(a) {}           // NOLINT: implicit like float
+  HWY_INLINE Float(float s) : v(hn::Set(FloatTag(), s)) {}  // NOLINT
 };
 HWY_INLINE Float load(const float* p) { return Float(hn::LoadU(FloatTag(), p)); }
 HWY_INLINE void store(Float a, float* p) { hn::StoreU(a.v, FloatTag(), p); }
@@ -114,12 +114,8 @@ HWY_INLINE Vec3 operator*(Float s, Vec3 a) { return {a.x * s, a.y * s, a.z * s};
 HWY_INLINE Vec3 operator/(Vec3 a, Vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
 HWY_INLINE Vec3 operator/(Vec3 a, Float s) { return {a.x / s, a.y / s, a.z / s}; }
 HWY_INLINE Float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-HWY_INLINE Vec3 cross(Vec3 a, Vec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-HWY_INLINE Vec3 select(Mask m, Vec3 a, Vec3 b) {
-  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
-}
+HWY_INLINE Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+HWY_INLINE Vec3 select(Mask m, Vec3 a, Vec3 b) { return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)}; }
 
 struct Vec4 {
   Float x, y, z, w;

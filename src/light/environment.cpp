@@ -20,8 +20,8 @@ Vec3 map_direction(const Environment& environment, float u, float v) {
 
 struct Texel {
   Vec3 direction;
-  Vec3 power;        ///< radiance · solid angle
-  float luminance;   ///< of power
+  Vec3 power;       ///< radiance · solid angle
+  float luminance;  ///< of power
 };
 
 float luminance(Vec3 c) { return kernel::v_luminance(c); }
@@ -54,11 +54,12 @@ std::vector<Texel> reduced(const Environment& environment) {
       Vec3 radiance = environment.radiance;
       if (has_map(environment)) {
         const Image& map = *environment.map;
-        radiance = radiance * map_mean(map, x * map.width / kWidth, (x + 1) * map.width / kWidth,
-                                       y * map.height / kHeight, (y + 1) * map.height / kHeight);
+        radiance = radiance * map_mean(map, x * map.width / kWidth, (x + 1) * map.width / kWidth, y * map.height / kHeight,
+                                       (y + 1) * map.height / kHeight);
       }
       const Vec3 power = max(radiance, {0, 0, 0}) * solid_angle;
-      const Vec3 d = map_direction(environment, (static_cast<float>(x) + 0.5f) / kWidth, (static_cast<float>(y) + 0.5f) / kHeight);
+      const Vec3 d =
+          map_direction(environment, (static_cast<float>(x) + 0.5f) / kWidth, (static_cast<float>(y) + 0.5f) / kHeight);
       texels.push_back({d, power, luminance(power)});
     }
   }
@@ -102,9 +103,8 @@ std::pair<Region, Region> split(const std::vector<Texel>& texels, const Region& 
 EnvironmentPiece summarize(const std::vector<Texel>& texels, const Region& r) {
   Vec3 mean, power;
   float weight = 0;
-  for_each_texel(texels, r, [&](const Texel& t, int, int) {
-    mean += t.direction * t.luminance, power += t.power, weight += t.luminance;
-  });
+  for_each_texel(texels, r,
+                 [&](const Texel& t, int, int) { mean += t.direction * t.luminance, power += t.power, weight += t.luminance; });
   if (!(weight > 0)) return {{0, 1, 0}, {0, 0, 0}, 0};
   const float resultant = length(mean) / weight;
   return {normalize(mean), power, std::sqrt(std::max(0.f, 1 - resultant))};

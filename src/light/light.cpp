@@ -71,7 +71,11 @@ LightRig prepare_lights(const Scene& scene, const MeshTracer& meshes) {
   LightRig rig;
   const std::vector<StrandLines> lines = strand_lines(scene.grooms);
   const Bounds hair = bounds(lines);
-  MapJob job{scene, meshes, lines, hair.empty() ? meshes.bounds() : hair, scene.settings.opacity_map_size,
+  MapJob job{scene,
+             meshes,
+             lines,
+             hair.empty() ? meshes.bounds() : hair,
+             scene.settings.opacity_map_size,
              stride_for(scene, kLightStrands)};
   std::vector<PreparedLight> group;
   for (const Light& light : scene.lights) {

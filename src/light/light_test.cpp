@@ -21,7 +21,8 @@ TriangleMesh sphere(float radius) {
   for (std::uint32_t r = 0; r <= kRings; ++r)
     for (std::uint32_t s = 0; s < kSides; ++s) {
       const float polar = kPi * static_cast<float>(r) / kRings, azimuth = 2 * kPi * static_cast<float>(s) / kSides;
-      mesh.positions.push_back(Vec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)) * radius);
+      mesh.positions.push_back(Vec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)) *
+                               radius);
     }
   for (std::uint32_t r = 0; r < kRings; ++r)
     for (std::uint32_t s = 0; s < kSides; ++s) {

@@ -136,8 +136,7 @@ std::vector<OpacityMap> build_opacity_maps(const std::vector<StrandLines>& groom
   return maps;
 }
 
-OpacityMap build_opacity_map(const std::vector<StrandLines>& grooms, const CameraView& view,
-                             const OpacitySettings& settings) {
+OpacityMap build_opacity_map(const std::vector<StrandLines>& grooms, const CameraView& view, const OpacitySettings& settings) {
   return std::move(build_opacity_maps(grooms, {&view, 1}, settings).front());
 }
 

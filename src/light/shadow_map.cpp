@@ -37,24 +37,25 @@ ShadowMap build_shadow_map(const MeshTracer& meshes, const CameraView& view) {
   map.depth.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   const float back = step_back(meshes, view);
   const int tile_columns = (view.width + kTile - 1) / kTile, tile_rows = (view.height + kTile - 1) / kTile;
-  parallel_for(static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows), 64,
-               [&](std::size_t begin, std::size_t end) {
-    std::array<Ray, MeshTracer::kPacket> rays;
-    std::array<RayHit, MeshTracer::kPacket> hits;
-    for (std::size_t tile = begin; tile < end; ++tile) {
-      const int x0 = static_cast<int>(tile % static_cast<std::size_t>(tile_columns)) * kTile;
-      const int y0 = static_cast<int>(tile / static_cast<std::size_t>(tile_columns)) * kTile;
-      for (int i = 0; i < kTile * kTile; ++i)
-        rays[static_cast<std::size_t>(i)] = texel_ray(view, x0 + i % kTile, y0 + i / kTile, back);
-      meshes.trace(rays, hits);
-      for (int i = 0; i < kTile * kTile; ++i) {
-        const int x = x0 + i % kTile, y = y0 + i / kTile;
-        if (x < view.width && y < view.height)
-          map.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x)] =
-              hits[static_cast<std::size_t>(i)].distance - back;
-      }
-    }
-  });
+  parallel_for(
+      static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows), 64,
+      [&](std::size_t begin, std::size_t end) {
+        std::array<Ray, MeshTracer::kPacket> rays;
+        std::array<RayHit, MeshTracer::kPacket> hits;
+        for (std::size_t tile = begin; tile < end; ++tile) {
+          const int x0 = static_cast<int>(tile % static_cast<std::size_t>(tile_columns)) * kTile;
+          const int y0 = static_cast<int>(tile / static_cast<std::size_t>(tile_columns)) * kTile;
+          for (int i = 0; i < kTile * kTile; ++i)
+            rays[static_cast<std::size_t>(i)] = texel_ray(view, x0 + i % kTile, y0 + i / kTile, back);
+          meshes.trace(rays, hits);
+          for (int i = 0; i < kTile * kTile; ++i) {
+            const int x = x0 + i % kTile, y = y0 + i / kTile;
+            if (x < view.width && y < view.height)
+              map.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x)] =
+                  hits[static_cast<std::size_t>(i)].distance - back;
+          }
+        }
+      });
   return map;
 }
 

@@ -21,8 +21,8 @@ constexpr std::size_t kMaxLanes = 16;
 
 /// Ends of one segment per lane on the map.
 struct Segments {
-  Float x, y, z, dx, dy, dz;   ///< texels, texels, metres: start and way to the end
-  Float band;                  ///< texels, width
+  Float x, y, z, dx, dy, dz;  ///< texels, texels, metres: start and way to the end
+  Float band;                 ///< texels, width
   Mask valid;
 };
 
@@ -84,8 +84,8 @@ HWY_INLINE void for_each_piece(const CameraView& view, const LineBlock& lines, f
     const Float parallel = v_clamp(ceiling(s.band * per_step), Float(1.0f), Float(std::max(w, h)));
     const int most_parallel = largest(s.valid, parallel);
     for (int line = 0; line < most_parallel; ++line) {
-      const Float side = s.band * ((Float(static_cast<float>(line) + 0.5f)) / parallel - Float(0.5f)) /
-                         max(reach, Float(1.0e-20f));
+      const Float side =
+          s.band * ((Float(static_cast<float>(line) + 0.5f)) / parallel - Float(0.5f)) / max(reach, Float(1.0e-20f));
       const Float x = s.x - s.dy * side, y = s.y + s.dx * side;
       Float t0(0.0f), t1(1.0f);
       clip_axis(x, s.dx, w, t0, t1), clip_axis(y, s.dy, h, t0, t1);
@@ -119,7 +119,8 @@ HWY_INLINE std::uint64_t lane_bits(Mask m) {
 void lower_to(std::uint32_t& value, std::uint32_t bits) {
   std::atomic_ref<std::uint32_t> shared(value);
   std::uint32_t seen = shared.load(std::memory_order_relaxed);
-  while (bits < seen && !shared.compare_exchange_weak(seen, bits, std::memory_order_relaxed)) {}
+  while (bits < seen && !shared.compare_exchange_weak(seen, bits, std::memory_order_relaxed)) {
+  }
 }
 
 }  // namespace
@@ -172,8 +173,6 @@ namespace pelage {
 HWY_EXPORT(SplatDepths);
 HWY_EXPORT(SplatCrossings);
 void splat_depths(const LineBlock& lines, const SplatTarget& target) { HWY_DYNAMIC_DISPATCH(SplatDepths)(lines, target); }
-void splat_crossings(const LineBlock& lines, const SplatTarget& target) {
-  HWY_DYNAMIC_DISPATCH(SplatCrossings)(lines, target);
-}
+void splat_crossings(const LineBlock& lines, const SplatTarget& target) { HWY_DYNAMIC_DISPATCH(SplatCrossings)(lines, target); }
 }  // namespace pelage
 #endif

@@ -12,11 +12,11 @@ namespace pelage {
 
 /// World-space points of several polylines. Point j and point j+1 bound a segment where width[j] > 0.
 struct LineBlock {
-  static constexpr std::size_t kPoints = 2048;   ///< aimed at; longer polylines grow the block
-  static constexpr std::size_t kPadding = 64;    ///< points of width 0 behind the last, for whole-lane loads
+  static constexpr std::size_t kPoints = 2048;  ///< aimed at; longer polylines grow the block
+  static constexpr std::size_t kPadding = 64;   ///< points of width 0 behind the last, for whole-lane loads
   std::size_t count = 0;
-  Buffer<float> x, y, z;                         ///< metres
-  Buffer<float> width;                           ///< metres, diameter of the segment that starts here; 0: none does
+  Buffer<float> x, y, z;  ///< metres
+  Buffer<float> width;    ///< metres, diameter of the segment that starts here; 0: none does
 };
 
 /// The map that is drawn into; the memory is shared by all threads.
@@ -26,7 +26,7 @@ struct SplatTarget {
   std::uint32_t* first_depth = nullptr;  ///< IEEE bits of positive floats, lowered by splat_depths
   std::uint32_t* crossings = nullptr;    ///< per texel and layer (not yet summed over layers), raised by splat_crossings
   std::array<float, OpacityMap::kLayers> layer_end{};
-  float units = 1;                       ///< of OpacityMap::kCrossingUnit per crossing, times the strands that each stands for
+  float units = 1;  ///< of OpacityMap::kCrossingUnit per crossing, times the strands that each stands for
 };
 
 /// Lowers first_depth to the depth of every segment that a block of texels sees. Segments that reach behind the near plane

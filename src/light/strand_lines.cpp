@@ -67,8 +67,8 @@ std::size_t pick_strand(std::size_t begin, std::size_t stride, std::size_t count
 }  // namespace
 
 StrandLines::StrandLines(const GroomInstance& groom)
-    : groom_(&groom), width_scale_(groom.width_scale * similarity_scale(groom.transform)),
-      mean_span_(mean_span_length(groom)), bounds_(control_bounds(groom)) {}
+    : groom_(&groom), width_scale_(groom.width_scale * similarity_scale(groom.transform)), mean_span_(mean_span_length(groom)),
+      bounds_(control_bounds(groom)) {}
 
 void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const {
   const StrandSet& set = *groom_->strands;

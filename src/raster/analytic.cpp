@@ -28,8 +28,7 @@ void StrandAreas::grow() {
   }
 }
 
-void StrandAreas::add(std::uint32_t pixel, std::uint32_t segment, float area, std::uint64_t mask, float cos2,
-                      float sin2) {
+void StrandAreas::add(std::uint32_t pixel, std::uint32_t segment, float area, std::uint64_t mask, float cos2, float sin2) {
   std::size_t slot = find(pixel);
   if (entries_[slot].pixel == kFree) {
     if (2 * used_.size() >= entries_.size()) {
@@ -99,8 +98,8 @@ void raster_analytic(const ScreenBlock& block, StrandAreas& areas, GBuffer& out)
       const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
       const float seen = area * visible_share(out, pixel, depth);
       if (seen > 0)
-        areas.add(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(j), seen, wide ? band_mask(band, p) : 0,
-                  cos2, sin2);
+        areas.add(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(j), seen, wide ? band_mask(band, p) : 0, cos2,
+                  sin2);
     });
   }
 }

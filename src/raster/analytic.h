@@ -17,9 +17,9 @@
 
 namespace pelage {
 
-inline constexpr float kMaxStrandDepth = 12.f;        ///< −log(1 − a) of a strand that fills the pixel
-inline constexpr float kMaskRadius = 0.25f;           ///< pixels, from which a band is wide enough for 8 × 8 points
-inline constexpr float kAreaUnit = 0x1p-14f;          ///< of GBuffer::tangent_cos2 and tangent_sin2
+inline constexpr float kMaxStrandDepth = 12.f;  ///< −log(1 − a) of a strand that fills the pixel
+inline constexpr float kMaskRadius = 0.25f;     ///< pixels, from which a band is wide enough for 8 × 8 points
+inline constexpr float kAreaUnit = 0x1p-14f;    ///< of GBuffer::tangent_cos2 and tangent_sin2
 
 /// Screen direction of the hair in a pixel (x right, y down), unit length, sign arbitrary; (1, 0) where there is none.
 inline Vec2 analytic_tangent(const GBuffer& g, std::size_t pixel) {
@@ -32,8 +32,8 @@ class StrandAreas {
  public:
   struct Entry {
     std::uint32_t pixel = kFree;
-    std::uint32_t segment = 0;            // the last one that came in
-    float area = 0, covered = 0;          // of this visit of the strand; of the visits before it together
+    std::uint32_t segment = 0;    // the last one that came in
+    float area = 0, covered = 0;  // of this visit of the strand; of the visits before it together
     std::uint64_t mask = 0, covered_mask = 0;
     float cos2 = 0, sin2 = 0;
     void end_visit();
@@ -63,9 +63,9 @@ class StrandAreas {
 
 /// The cells that hair small in the image is summed in: a view of its own onto the part of the image around it.
 struct AnalyticCells {
-  int per_pixel = 1;    ///< k; with 1 the pixels themselves will do
+  int per_pixel = 1;      ///< k; with 1 the pixels themselves will do
   int left = 0, top = 0;  ///< pixel of the image where the cells begin
-  CameraView view;      ///< its pixels are the cells
+  CameraView view;        ///< its pixels are the cells
 };
 
 /// Cells for all grooms of `scene`: enough for kCellsAcross over the height of the smallest, as long as they are no more

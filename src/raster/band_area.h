@@ -70,8 +70,8 @@ inline std::uint64_t band_mask(const kernel::RasterBand& band, const PixelSides&
 inline bool covers_center(const kernel::RasterBand& band, const PixelSides& p) {
   const float column = p.u - 0.5f, row = p.v - 0.5f;
   return column >= std::ceil(band.first - 0.5f) && column <= std::floor(band.last - 0.5f) &&
-         row >= kernel::raster_first_row(p.center, p.half, 0.5f) &&
-         kernel::raster_row_covered(row, 0.5f, p.center, p.half) && kernel::raster_between_caps(band, p.u, p.v);
+         row >= kernel::raster_first_row(p.center, p.half, 0.5f) && kernel::raster_row_covered(row, 0.5f, p.center, p.half) &&
+         kernel::raster_between_caps(band, p.u, p.v);
 }
 
 /// Calls emit(x, y, depth) for every pixel that the band touches: some part of it is covered, however small.

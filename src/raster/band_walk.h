@@ -11,8 +11,8 @@ namespace pelage {
 
 /// The band of the segment that starts at point j of `block` (see kernel/raster/band.h).
 inline kernel::RasterBand band_at(const ScreenBlock& block, std::size_t j) {
-  return kernel::raster_band({block.x[j], block.y[j]}, {block.x[j + 1], block.y[j + 1]}, block.radius[j],
-                             block.radius[j + 1], block.depth[j], block.depth[j + 1], {block.cap_x[j], block.cap_y[j]},
+  return kernel::raster_band({block.x[j], block.y[j]}, {block.x[j + 1], block.y[j + 1]}, block.radius[j], block.radius[j + 1],
+                             block.depth[j], block.depth[j + 1], {block.cap_x[j], block.cap_y[j]},
                              {block.cap_x[j + 1], block.cap_y[j + 1]});
 }
 
@@ -70,8 +70,7 @@ void walk_pixels(const kernel::RasterBand& band, int width, int height, const Vi
 /// Calls emit(x, y, depth, mask) for every pixel of which the band covers samples; bit i of `mask` stands for the
 /// `count` ≤ 32 positions in turn.
 template <class Emit>
-void walk_samples(const kernel::RasterBand& band, int width, int height, const Vec2* positions, int count,
-                  const Emit& emit) {
+void walk_samples(const kernel::RasterBand& band, int width, int height, const Vec2* positions, int count, const Emit& emit) {
   walk_pixels(band, width, height, [&](int column, int row, const PixelSides& p) {
     std::uint32_t mask = 0;
     for (int i = 0; i < count; ++i) {

@@ -79,7 +79,7 @@ class Compressor {
 
  private:
   static constexpr hn::Repartition<std::uint8_t, wide::UintTag> kByteTag{};
-  hn::Vec<hn::Repartition<std::uint8_t, wide::UintTag>> bytes_;
+  hn::Vec<hn::Repartition<std::uint8_t, wide::UintTag> > bytes_;
   std::size_t count_;
 };
 #else

@@ -61,7 +61,8 @@ double supersampled(const ScreenBlock& block, int x, int y, int n) {
   int hits = 0;
   for (int i = 0; i < n * n; ++i) {
     // A rotated lattice: its rows are not parallel to anything.
-    const double px = x + std::fmod((i + 0.5) * 0.7548776662466927, 1.0), py = y + std::fmod((i + 0.5) * 0.5698402909980532, 1.0);
+    const double px = x + std::fmod((i + 0.5) * 0.7548776662466927, 1.0),
+                 py = y + std::fmod((i + 0.5) * 0.5698402909980532, 1.0);
     hits += std::any_of(segments.begin(), segments.end(), [&](std::size_t j) { return covers(block, j, px, py); });
   }
   return static_cast<double>(hits) / (n * n);
@@ -91,7 +92,8 @@ TEST(Coverage, AnalyticAreaOfIsolatedStrands) {
       int touched = 0;
       for (int y = 0; y < 40; ++y)
         for (int x = 0; x < 64; ++x) {
-          const double exact = supersampled(p.block, x, y, 32), found = analytic_coverage(g, static_cast<std::size_t>(y * 64 + x));
+          const double exact = supersampled(p.block, x, y, 32),
+                       found = analytic_coverage(g, static_cast<std::size_t>(y * 64 + x));
           if (exact == 0 && found == 0) continue;
           ++touched, error += std::fabs(exact - found), worst = std::max(worst, std::fabs(exact - found));
         }
@@ -104,8 +106,8 @@ TEST(Coverage, AnalyticAreaOfIsolatedStrands) {
 ScreenBlock random_segment(std::uint32_t key) {
   Rng rng(11, key);
   ScreenBlock b;
-  for (Buffer<float> ScreenBlock::*member : {&ScreenBlock::x, &ScreenBlock::y, &ScreenBlock::depth, &ScreenBlock::radius,
-                                             &ScreenBlock::cap_x, &ScreenBlock::cap_y})
+  for (Buffer<float> ScreenBlock::*member :
+       {&ScreenBlock::x, &ScreenBlock::y, &ScreenBlock::depth, &ScreenBlock::radius, &ScreenBlock::cap_x, &ScreenBlock::cap_y})
     (b.*member).resize(2);
   b.id.resize(2);
   b.count = 2, b.id[0] = 0, b.id[1] = ScreenBlock::kNoSegment;
@@ -168,9 +170,8 @@ TEST(Coverage, AreasAreThoseOfThePolygon) {
   for (std::uint32_t key = 0; key < 100000; ++key) {
     const ScreenBlock b = random_segment(key);
     double found[kSize][kSize] = {};
-    walk_areas(band_at(b, 0), kSize, kSize, [&](int x, int y, float, float area, const PixelSides& p) {
-      found[y][x] = area, whole += p.whole;
-    });
+    walk_areas(band_at(b, 0), kSize, kSize,
+               [&](int x, int y, float, float area, const PixelSides& p) { found[y][x] = area, whole += p.whole; });
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const std::vector<P> c = clipped(b, x, y, 0);

@@ -24,7 +24,6 @@ struct FragmentBuffer {
 void raster_center(const ScreenBlock& block, int width, int height, FragmentBuffer& fragments, PixelKey* keys);
 
 /// The same for sample layers of 1, 2, 4, 8 or 16 samples a pixel; keys: [height·width·samples].
-void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments,
-                    PixelKey* keys);
+void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, PixelKey* keys);
 
 }  // namespace pelage

@@ -19,7 +19,8 @@ template <class T>
 void clear(Buffer<T>& buffer, bool wanted, std::size_t size, T value) {
   if (!wanted) return buffer.release();
   buffer.resize(size);
-  parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) { std::fill(&buffer[begin], &buffer[begin] + (end - begin), value); });
+  parallel_for(size, kGrain,
+               [&](std::size_t begin, std::size_t end) { std::fill(&buffer[begin], &buffer[begin] + (end - begin), value); });
 }
 
 void hide(Buffer<PixelKey>& keys, const Buffer<float>& opaque, std::size_t samples_per_key) {

@@ -67,7 +67,8 @@ Vec3 direct_light(const Scene& scene, const MeshTracer& meshes, const Shading& s
   const bool shadowed = scene.settings.shadows && prepared.light.casts_shadow;
   if (shadowed && in_shadow(meshes, s, light)) return {0, 0, 0};
   const float open = kernel::light_transmittance(crossings_at(prepared.opacity, s.surface.position));
-  const float gloss = kernel::shade_ggx(s.surface.normal, s.to_eye, light.to_light, s.material->specular, s.material->roughness);
+  const float gloss =
+      kernel::shade_ggx(s.surface.normal, s.to_eye, light.to_light, s.material->specular, s.material->roughness);
   const Vec3 matte = s.surface.color * ((1 - s.material->specular) * cosine / kPi);
   return (matte + Vec3(gloss, gloss, gloss)) * light.irradiance * open;
 }
@@ -79,8 +80,8 @@ float environment_visibility(const Shading& s, const LightRig& rig) {
     if (piece.spread == 0) continue;
     const Vec3 to_light = -piece.light.direction;
     // A piece is wide: it lights a surface a little past the horizon of its center.
-    const float weight = std::max(dot(s.surface.normal, to_light) + 0.5f * piece.spread, 0.f) *
-                         kernel::v_luminance(piece.light.intensity);
+    const float weight =
+        std::max(dot(s.surface.normal, to_light) + 0.5f * piece.spread, 0.f) * kernel::v_luminance(piece.light.intensity);
     if (weight == 0) continue;
     all += weight;
     const float open = kernel::light_transmittance(crossings_at(piece.opacity, s.surface.position));

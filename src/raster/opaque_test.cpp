@@ -21,7 +21,8 @@ constexpr float kPi = 3.14159265f;
 MeshInstance wall(Vec3 center, float half) {
   auto mesh = std::make_shared<TriangleMesh>();
   for (const Vec2 c : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)})
-    mesh->positions.push_back(center + Vec3(c.x * half, c.y * half, 0)), mesh->uv.push_back({0.5f + 0.5f * c.x, 0.5f + 0.5f * c.y});
+    mesh->positions.push_back(center + Vec3(c.x * half, c.y * half, 0)),
+        mesh->uv.push_back({0.5f + 0.5f * c.x, 0.5f + 0.5f * c.y});
   mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
   MeshInstance instance;
   instance.mesh = mesh;
@@ -51,7 +52,8 @@ OpaqueLayer trace(const Scene& scene, const LightRig& rig, int samples = 1) {
 }
 
 std::size_t middle(const OpaqueLayer& layer) {
-  return (static_cast<std::size_t>(layer.height / 2) * static_cast<std::size_t>(layer.width) + static_cast<std::size_t>(layer.width / 2)) *
+  return (static_cast<std::size_t>(layer.height / 2) * static_cast<std::size_t>(layer.width) +
+          static_cast<std::size_t>(layer.width / 2)) *
          static_cast<std::size_t>(layer.samples);
 }
 

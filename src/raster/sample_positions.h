@@ -26,8 +26,8 @@ inline std::array<Vec2, kMaxSamples> sample_positions(int count) {
   const Sixteenths* table = count == 1 ? k1 : count == 2 ? k2 : count == 4 ? k4 : count == 8 ? k8 : k16;
   std::array<Vec2, kMaxSamples> positions;
   for (int i = 0; i < count; ++i)
-    positions[static_cast<std::size_t>(i)] = Vec2(0.5f + static_cast<float>(table[i].x) / 16.f,
-                                                  0.5f + static_cast<float>(table[i].y) / 16.f);
+    positions[static_cast<std::size_t>(i)] =
+        Vec2(0.5f + static_cast<float>(table[i].x) / 16.f, 0.5f + static_cast<float>(table[i].y) / 16.f);
   return positions;
 }
 

@@ -75,8 +75,7 @@ struct SampleOffsets {
 
 /// One column of each lane: appends the pixels with covered samples.
 template <int kSamples>
-HWY_INLINE void visit_column(const SegmentLanes& w, const SampleOffsets& o, Float column, FragmentBuffer& f,
-                             PixelKey* keys) {
+HWY_INLINE void visit_column(const SegmentLanes& w, const SampleOffsets& o, Float column, FragmentBuffer& f, PixelKey* keys) {
   const wide::RasterBand& band = w.band;
   const Float u = column + Float(0.5f), s = u - band.u;
   const Float center = wide::raster_band_center(band, s), half = wide::raster_band_half(band, s);
@@ -155,8 +154,7 @@ namespace pelage {
 
 HWY_EXPORT(Samples);
 
-void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments,
-                    PixelKey* keys) {
+void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, PixelKey* keys) {
   HWY_DYNAMIC_DISPATCH(Samples)(block, width, height, samples, fragments, keys);
 }
 

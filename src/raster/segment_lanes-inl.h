@@ -36,9 +36,8 @@ HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width
   };
   w.id = hn::LoadU(uint_tag, &block.id[j]);
   w.band = wide::raster_band(pair(block.x, block.y, j), pair(block.x, block.y, j + 1), wide::load(&block.radius[j]),
-                             wide::load(&block.radius[j + 1]), wide::load(&block.depth[j]),
-                             wide::load(&block.depth[j + 1]), pair(block.cap_x, block.cap_y, j),
-                             pair(block.cap_x, block.cap_y, j + 1));
+                             wide::load(&block.radius[j + 1]), wide::load(&block.depth[j]), wide::load(&block.depth[j + 1]),
+                             pair(block.cap_x, block.cap_y, j), pair(block.cap_x, block.cap_y, j + 1));
   const wide::Float w_pixels(static_cast<float>(width)), h_pixels(static_cast<float>(height));
   const wide::Float columns = select(w.band.x_major, w_pixels, h_pixels);
   w.rows = select(w.band.x_major, h_pixels, w_pixels);

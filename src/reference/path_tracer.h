@@ -49,21 +49,21 @@ struct PathSample {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr std::size_t kBounces = 16, kLobes = 5;
 
-  Vec3 radiance;              ///< scene-linear, W/(m²·sr); 0 where alpha is 0
-  float alpha = 0;            ///< 1 where a strand, a mesh or a visible environment is hit, else 0
-  bool hair = false;          ///< a strand is hit first
-  float depth = INFINITY;     ///< camera z, metres; +inf where nothing is hit
-  Vec3 position;              ///< metres, world; on the strand's axis; 0 where nothing is hit, like all that follows
-  Vec3 tangent;               ///< unit length, root to tip, world; 0 on meshes
-  Vec3 normal;                ///< unit length, world, facing the eye; on strands across the tangent
+  Vec3 radiance;           ///< scene-linear, W/(m²·sr); 0 where alpha is 0
+  float alpha = 0;         ///< 1 where a strand, a mesh or a visible environment is hit, else 0
+  bool hair = false;       ///< a strand is hit first
+  float depth = INFINITY;  ///< camera z, metres; +inf where nothing is hit
+  Vec3 position;           ///< metres, world; on the strand's axis; 0 where nothing is hit, like all that follows
+  Vec3 tangent;            ///< unit length, root to tip, world; 0 on meshes
+  Vec3 normal;             ///< unit length, world, facing the eye; on strands across the tangent
   std::uint32_t groom = kNone, strand = kNone;  ///< indices into Scene::grooms and its strands
-  float u = 0;                ///< 0 at the root … 1 at the tip
-  float width = 0;            ///< diameter, metres
-  Vec3 albedo;                ///< share of light that the first hit scatters, all directions together
-  Vec2 motion;                ///< pixels from this sample to where its place was a frame before
-  std::array<Vec3, kBounces> bounces{};  ///< radiance by the scattering events between its source and the first hit; the
-                                         ///< last takes the rest. Sums to `radiance`; only where asked for
-  std::array<Vec3, kLobes> lobes{};      ///< by what the first hit did to it: R, TT, TRT, rest, surface
+  float u = 0;                                  ///< 0 at the root … 1 at the tip
+  float width = 0;                              ///< diameter, metres
+  Vec3 albedo;                                  ///< share of light that the first hit scatters, all directions together
+  Vec2 motion;                                  ///< pixels from this sample to where its place was a frame before
+  std::array<Vec3, kBounces> bounces{};         ///< radiance by the scattering events between its source and the first hit; the
+                                                ///< last takes the rest. Sums to `radiance`; only where asked for
+  std::array<Vec3, kLobes> lobes{};             ///< by what the first hit did to it: R, TT, TRT, rest, surface
 };
 
 /// A scene made ready for rays: strands as curves of their basis, meshes as triangles, lights with their densities.

@@ -54,8 +54,7 @@ std::vector<LightConstants> light_constants(const LightRig& rig) {
 
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig) {
   const bool dual = dual_scattering && material.model != HairMaterial::Model::kKajiyaKay;
-  return {material, dual, light_constants(rig),
-          dual ? make_forward_attenuation_table(material) : ForwardAttenuationTable{}};
+  return {material, dual, light_constants(rig), dual ? make_forward_attenuation_table(material) : ForwardAttenuationTable{}};
 }
 
 }  // namespace pelage

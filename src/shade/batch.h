@@ -20,21 +20,21 @@ struct ShadeBatch {
   static constexpr std::size_t kPadding = 64;
   using Lanes = std::array<float, kSize + kPadding>;
   std::size_t count = 0;
-  alignas(64) Lanes px, py, pz;                 ///< position on the strand's axis, metres, world
-  alignas(64) Lanes tx, ty, tz;                 ///< tangent, unit length
-  alignas(64) Lanes ex, ey, ez;                 ///< direction to the eye, unit length
+  alignas(64) Lanes px, py, pz;                    ///< position on the strand's axis, metres, world
+  alignas(64) Lanes tx, ty, tz;                    ///< tangent, unit length
+  alignas(64) Lanes ex, ey, ez;                    ///< direction to the eye, unit length
   alignas(64) Lanes absorb_r, absorb_g, absorb_b;  ///< per fiber radius
-  alignas(64) Lanes r, g, b;                    ///< result: radiance, W/(m²·sr)
+  alignas(64) Lanes r, g, b;                       ///< result: radiance, W/(m²·sr)
 };
 
 /// A map of a light, as plain numbers and pointers that outlive the evaluation.
 struct MapConstants {
-  float row[3][4];          ///< world to camera
+  float row[3][4];  ///< world to camera
   float focal = 1, center_x = 0, center_y = 0, near_plane = 0;
   bool perspective = false;
-  float last_x = 0, last_y = 0;     ///< width − 1, height − 1
+  float last_x = 0, last_y = 0;  ///< width − 1, height − 1
   std::int32_t width = 0, origin_width = 0;
-  const float* depth = nullptr;     ///< opacity: first depths of blocks; shadow: depths. Null: no map
+  const float* depth = nullptr;  ///< opacity: first depths of blocks; shadow: depths. Null: no map
   const std::uint32_t* crossings = nullptr;
   std::array<float, OpacityMap::kLayers> layer_end{};
 };
@@ -44,8 +44,8 @@ struct LightConstants {
   Light::Type type = Light::Type::kDirectional;
   Vec3 position, to_light, intensity;
   float cos_inner = 0, cos_outer = 0;
-  float spread2 = 0;        ///< radians², variance of its directions
-  bool wide = false;        ///< so spread that its azimuth is averaged over a half circle
+  float spread2 = 0;  ///< radians², variance of its directions
+  bool wide = false;  ///< so spread that its azimuth is averaged over a half circle
   bool only_in_view = false;
   MapConstants opacity, shadow;
 };

@@ -11,8 +11,7 @@ constexpr int kOffsets = 96;  // midpoints in gamma_i = asin(h)
 
 // Mean of |x + noise|, the noise normal with deviation s: the folded normal distribution.
 double folded_mean(double x, double s) {
-  return s * std::sqrt(2 / std::numbers::pi) * std::exp(-0.5 * x * x / (s * s)) +
-         x * std::erf(x / (s * std::numbers::sqrt2));
+  return s * std::sqrt(2 / std::numbers::pi) * std::exp(-0.5 * x * x / (s * s)) + x * std::erf(x / (s * std::numbers::sqrt2));
 }
 
 // Mean of |x|/pi, x wrapped to [-pi, pi], after a Gaussian blur of variance v. Narrow: folded at 0 or at pi, whichever
@@ -70,8 +69,8 @@ double sum_orders(const std::array<Offset, kOffsets>& all, const HairMaterial& m
   double forward = 0;
   for (const Offset& o : all) {
     const double t = std::exp(-sigma_a * o.path), pass = (1 - o.fresnel) * (1 - o.fresnel) * t, bounce = o.fresnel * t;
-    forward += o.weight *
-               (m.specular_gain * o.fresnel * o.r + pass * (o.tt + bounce * (o.trt + o.rest * bounce / (1 - bounce))));
+    forward +=
+        o.weight * (m.specular_gain * o.fresnel * o.r + pass * (o.tt + bounce * (o.trt + o.rest * bounce / (1 - bounce))));
   }
   return forward;
 }
@@ -83,8 +82,7 @@ double forward_attenuation(const HairMaterial& material, double cos_theta, doubl
 }
 
 ForwardAttenuationTable make_forward_attenuation_table(const HairMaterial& material) {
-  const int rows = static_cast<int>(kernel::kScatterTableRows),
-            columns = static_cast<int>(kernel::kScatterTableColumns);
+  const int rows = static_cast<int>(kernel::kScatterTableRows), columns = static_cast<int>(kernel::kScatterTableColumns);
   ForwardAttenuationTable table;
   for (int row = 0; row < rows; ++row) {
     const auto all = offsets(material, static_cast<double>(row) / (rows - 1));

@@ -25,8 +25,7 @@ double adaptive(double a, double b, double fa, double fm, double fb, double tole
   const double m = 0.5 * (a + b), fl = f(0.5 * (a + m)), fr = f(0.5 * (m + b));
   const double coarse = (b - a) / 6 * (fa + 4 * fm + fb), fine = (b - a) / 12 * (fa + 4 * fl + 2 * fm + 4 * fr + fb);
   if (depth == 0 || std::fabs(fine - coarse) < 15 * tolerance) return fine;
-  return adaptive(a, m, fa, fl, fm, tolerance / 2, depth - 1, f) +
-         adaptive(m, b, fm, fr, fb, tolerance / 2, depth - 1, f);
+  return adaptive(a, m, fa, fl, fm, tolerance / 2, depth - 1, f) + adaptive(m, b, fm, fr, fb, tolerance / 2, depth - 1, f);
 }
 double exact_forward(double cos_theta, double eta, double sigma_a) {
   const auto f = [&](double gamma) { return forward_integrand(gamma, cos_theta, eta, sigma_a); };

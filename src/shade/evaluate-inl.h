@@ -6,7 +6,9 @@
 
 // Camera-space place of a world-space point.
 PELAGE_LANES_FN Vec3 shade_to_camera(const MapConstants& m, Vec3 p) {
-  const auto row = [&](int i) { return p.x * Float(m.row[i][0]) + p.y * Float(m.row[i][1]) + p.z * Float(m.row[i][2]) + Float(m.row[i][3]); };
+  const auto row = [&](int i) {
+    return p.x * Float(m.row[i][0]) + p.y * Float(m.row[i][1]) + p.z * Float(m.row[i][2]) + Float(m.row[i][3]);
+  };
   return Vec3(row(0), row(1), row(2));
 }
 
@@ -20,9 +22,10 @@ PELAGE_LANES_FN ShadeFootprint shade_footprint(const MapConstants& m, Vec3 c, fl
   const Float scale = m.perspective ? Float(m.focal) / max(c.z, Float(m.near_plane)) : Float(m.focal);
   const Float x = Float(m.center_x) + scale * c.x - Float(0.5f), y = Float(m.center_y) + scale * c.y - Float(0.5f);
   ShadeFootprint f;
-  f.inside = (c.z >= Float(m.near_plane)) && (x >= Float(margin)) && (y >= Float(margin)) &&
-             (x < Float(m.last_x - margin)) && (y < Float(m.last_y - margin));
-  const Float sx = v_clamp(x, Float(margin), Float(m.last_x - margin - 1)), sy = v_clamp(y, Float(margin), Float(m.last_y - margin - 1));
+  f.inside = (c.z >= Float(m.near_plane)) && (x >= Float(margin)) && (y >= Float(margin)) && (x < Float(m.last_x - margin)) &&
+             (y < Float(m.last_y - margin));
+  const Float sx = v_clamp(x, Float(margin), Float(m.last_x - margin - 1)),
+              sy = v_clamp(y, Float(margin), Float(m.last_y - margin - 1));
   f.x = floor(sx), f.y = floor(sy);
   f.right = v_clamp(x - f.x, Float(0.0f), Float(1.0f)), f.lower = v_clamp(y - f.y, Float(0.0f), Float(1.0f));
   return f;
@@ -66,9 +69,7 @@ PELAGE_LANES_FN Float shade_mesh_visibility(const MapConstants& m, Vec3 p) {
   const Float texel = (m.perspective ? c.z : Float(1.0f)) / Float(m.focal);
   const Float bias = Float(kHairBias.metres) + Float(kHairBias.texels) * texel;
   const Int corner = (to_int(f.y) - Int(1)) * Int(m.width) + to_int(f.x) - Int(1);
-  const auto lit = [&](int x, int y) {
-    return light_depth_test(c.z, gather(m.depth, corner + Int(y * m.width + x)), bias);
-  };
+  const auto lit = [&](int x, int y) { return light_depth_test(c.z, gather(m.depth, corner + Int(y * m.width + x)), bias); };
   const auto row = [&](int y) { return lit(0, y) * (Float(1.0f) - f.right) + lit(1, y) + lit(2, y) + lit(3, y) * f.right; };
   const Float sum = row(0) * (Float(1.0f) - f.lower) + row(1) + row(2) + row(3) * f.lower;
   return select(f.inside, sum * Float(1.f / 9), Float(1.0f));
@@ -99,12 +100,12 @@ PELAGE_LANES_FN ShadeIllumination shade_illuminate(const LightConstants& light, 
 // A strand where it is seen, and everything about it that does not depend on the light.
 struct ShadePlace {
   Vec3 position, tangent;
-  Vec3 across_o;        // direction to the eye in the normal plane, unit length
+  Vec3 across_o;  // direction to the eye in the normal plane, unit length
   ScatterFiber fiber;
   ScatterLobes lobes;
   ScatterAverages averages;
   ScatterBack back;
-  Vec3 tuft_color;      // of Kajiya-Kay
+  Vec3 tuft_color;  // of Kajiya-Kay
 };
 
 PELAGE_LANES_FN ShadePlace shade_place(const HairMaterial& material, const ShadeBatch& batch, std::size_t i) {

@@ -79,7 +79,9 @@ Scene thicket(HairMaterial::Model model) {
   std::vector<std::array<Vec3, 2>> lines;
   for (std::uint32_t i = 0; i < 300; ++i) {
     Rng rng(9, i);
-    const auto point = [&] { return Vec3(0.2f * rng.uniform() - 0.1f, 0.2f * rng.uniform() - 0.1f, 0.2f * rng.uniform() - 0.1f); };
+    const auto point = [&] {
+      return Vec3(0.2f * rng.uniform() - 0.1f, 0.2f * rng.uniform() - 0.1f, 0.2f * rng.uniform() - 0.1f);
+    };
     const Vec3 a = point();
     lines.push_back({a, point()});
   }
@@ -132,7 +134,8 @@ TEST(Shade, LoneStrandEqualsItsModel) {
   const Vec3 to_eye = normalize(Vec3(0, -y, 1));
   for (const Vec3 travels : {Vec3(0, 0, -1), Vec3(0.5f, -0.4f, -1), Vec3(-1, 0.8f, 0.3f), Vec3(0.1f, 0.2f, 1)}) {
     const Vec3 to_light = -normalize(travels);
-    const float sin_o = to_eye.y, cos_o = std::sqrt(1 - sin_o * sin_o), sin_i = to_light.y, cos_i = std::sqrt(1 - sin_i * sin_i);
+    const float sin_o = to_eye.y, cos_o = std::sqrt(1 - sin_o * sin_o), sin_i = to_light.y,
+                cos_i = std::sqrt(1 - sin_i * sin_i);
     const float cos_phi = to_light.z / std::sqrt(to_light.x * to_light.x + to_light.z * to_light.z);
     const auto close = [&](Vec3 shaded, Vec3 model) {
       const Vec3 expected = model * Vec3(2, 3, 4);
@@ -216,7 +219,8 @@ TEST(Shade, DirectLightFadesWithTheCrossingsOfTheOpacityMap) {
     const std::uint32_t i = lit.index[p];
     if (i == Radiance::kNone || !(lit.color[i].x > 1e-4f)) continue;
     const SegmentRef s = find_segment(scene, numbering, static_cast<std::uint32_t>(g.sample_keys[p]));
-    const float t = locate_on_segment(scene, numbering, view, s, static_cast<float>(p % 32) + 0.5f, static_cast<float>(p / 32) + 0.5f);
+    const float t =
+        locate_on_segment(scene, numbering, view, s, static_cast<float>(p % 32) + 0.5f, static_cast<float>(p / 32) + 0.5f);
     const float n = crossings_at(rig.lights[0].opacity, surface_at(scene, numbering, s, t).position);
     EXPECT_NEAR(shadowed.color[i].x / lit.color[i].x, std::exp(-n), 2e-3f) << p;
     deepest = std::max(deepest, n);
@@ -240,7 +244,8 @@ TEST(Shade, MultipleScatteringBrightensBlondHairInShadow) {
 }
 
 TEST(Shade, StrandColorsAreUsedWhereAskedFor) {
-  StrandSet set = linear({{Vec3(-0.01f, -0.5f, 0), Vec3(-0.01f, 0.5f, 0)}, {Vec3(0.01f, -0.5f, 0), Vec3(0.01f, 0.5f, 0)}}, 1e-3f);
+  StrandSet set =
+      linear({{Vec3(-0.01f, -0.5f, 0), Vec3(-0.01f, 0.5f, 0)}, {Vec3(0.01f, -0.5f, 0), Vec3(0.01f, 0.5f, 0)}}, 1e-3f);
   set.colors = {{0.9f, 0.1f, 0.1f}, {0.1f, 0.1f, 0.9f}};
   Scene scene = scene_of(std::move(set));
   scene.grooms[0].material.color_source = HairMaterial::ColorSource::kStrand;
@@ -269,9 +274,9 @@ TEST(Shade, NothingVisibleAndNoLights) {
 
 TEST(VisibleList, OneEntryPerSegmentAndPixel) {
   const auto key = [](std::uint32_t depth, std::uint32_t id) { return PixelKey{depth} << 32 | id; };
-  const std::vector<PixelKey> keys = {key(5, 1), key(4, 2), key(3, 1), kEmptyPixel,  // pixel 0
+  const std::vector<PixelKey> keys = {key(5, 1),   key(4, 2),   key(3, 1),   kEmptyPixel,  // pixel 0
                                       kEmptyPixel, kEmptyPixel, kEmptyPixel, kEmptyPixel,
-                                      key(1, 1), key(1, 1), key(1, 1), key(2, 1)};
+                                      key(1, 1),   key(1, 1),   key(1, 1),   key(2, 1)};
   const VisibleList list = list_visible(keys, 4);
   ASSERT_EQ(list.samples.size(), 3u);
   EXPECT_EQ(list.samples[0].key, key(5, 1));

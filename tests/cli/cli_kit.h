@@ -28,13 +28,15 @@ struct Outcome {
   std::string out, err;
 };
 
-inline int status_of(int wait_status) { return WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 128 + WTERMSIG(wait_status); }
+inline int status_of(int wait_status) {
+  return WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 128 + WTERMSIG(wait_status);
+}
 
 class Cli : public testing::Test {
  protected:
   Cli() {
-    folder_ = fs::path(testing::TempDir()) / ("cli_" + std::to_string(getpid()) + "_" +
-                                              testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = fs::path(testing::TempDir()) /
+              ("cli_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
   }
   ~Cli() override { fs::remove_all(folder_); }
@@ -42,7 +44,8 @@ class Cli : public testing::Test {
   fs::path in(const std::string& name) const { return folder_ / name; }
 
   Outcome run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" PELAGE_COMMAND "' " + arguments + " >.out 2>.err </dev/null";
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" PELAGE_COMMAND "' " + arguments + " >.out 2>.err </dev/null";
     const int status = std::system(command.c_str());
     return {status_of(status), slurp(in(".out")), slurp(in(".err"))};
   }

@@ -35,12 +35,18 @@ TEST_F(Cli, HelpAndVersionSucceed) {
 
 TEST_F(Cli, UsageErrorsNameTheNearest) {
   const std::pair<const char*, const char*> cases[] = {
-      {"rendr x", "did you mean render?"},          {"redner", "did you mean render?"},
-      {"render x -o a.png --siez 1x1", "did you mean --size?"}, {"bench --lst", "did you mean --list?"},
-      {"render x -o a.png --view dept", "did you mean `depth`?"}, {"render x -o a.png --hair blonde", "did you mean `blond`?"},
-      {"render", "INPUT"},                          {"render x", "--output"},
-      {"render x -o a.png --spp 3", "--spp"},       {"render x -o a.png --threads -1", "--threads"},
-      {"render x -o a.png --isa MMX", "--isa"},     {"", "subcommand"},
+      {"rendr x", "did you mean render?"},
+      {"redner", "did you mean render?"},
+      {"render x -o a.png --siez 1x1", "did you mean --size?"},
+      {"bench --lst", "did you mean --list?"},
+      {"render x -o a.png --view dept", "did you mean `depth`?"},
+      {"render x -o a.png --hair blonde", "did you mean `blond`?"},
+      {"render", "INPUT"},
+      {"render x", "--output"},
+      {"render x -o a.png --spp 3", "--spp"},
+      {"render x -o a.png --threads -1", "--threads"},
+      {"render x -o a.png --isa MMX", "--isa"},
+      {"", "subcommand"},
   };
   make_hair();
   for (const auto& [arguments, words] : cases) {
@@ -148,11 +154,27 @@ TEST_F(Cli, OptionsReachThePicture) {
     return outcome.status ? "" : nlohmann::json::parse(outcome.out)["hash"].get<std::string>();
   };
   const std::string plain = hash("");
-  for (const char* options :
-       {"--spp 16", "--view u", "--view depth", "--exposure 1", "--background 1,0,0", "--background transparent", "--eye 1,0,0",
-        "--target 0,0.1,0", "--fov 60", "--turn 90", "--ortho", "--light point:0,1,1:2,2,2", "--light directional:0,-1,0:3,3,3",
-        "--no-shadows", "--hair blond", "--color 0.9,0.1,0.1", "--melanin 4", "--model kajiya-kay", "--model zhu",
-        "--width-scale 3", "--no-dual-scattering"})
+  for (const char* options : {"--spp 16",
+                              "--view u",
+                              "--view depth",
+                              "--exposure 1",
+                              "--background 1,0,0",
+                              "--background transparent",
+                              "--eye 1,0,0",
+                              "--target 0,0.1,0",
+                              "--fov 60",
+                              "--turn 90",
+                              "--ortho",
+                              "--light point:0,1,1:2,2,2",
+                              "--light directional:0,-1,0:3,3,3",
+                              "--no-shadows",
+                              "--hair blond",
+                              "--color 0.9,0.1,0.1",
+                              "--melanin 4",
+                              "--model kajiya-kay",
+                              "--model zhu",
+                              "--width-scale 3",
+                              "--no-dual-scattering"})
     EXPECT_NE(hash(options), plain) << options;
 }
 
@@ -170,7 +192,8 @@ TEST_F(Cli, GrownHairShowsTheHeadItGrewOn) {
   const auto hash = [&](const std::string& arguments, bool head) {
     const Outcome outcome = run("render --size 64x48 -o out.png --json " + arguments);
     EXPECT_EQ(outcome.status, 0) << arguments << outcome.err;
-    EXPECT_EQ(outcome.err.find("mannequin it was grown on; --no-head") != std::string::npos, head) << arguments << ": " << outcome.err;
+    EXPECT_EQ(outcome.err.find("mannequin it was grown on; --no-head") != std::string::npos, head)
+        << arguments << ": " << outcome.err;
     return outcome.status ? "" : nlohmann::json::parse(outcome.out)["hash"].get<std::string>();
   };
   std::ofstream(in("tile.obj")) << "v 0 0 0\nv 0.1 0 0\nv 0.1 0 -0.1\nf 1 2 3\n";
@@ -197,13 +220,15 @@ TEST_F(Cli, GrowsEveryStyle) {
 
 TEST_F(Cli, GrowsOnAMeshOfAnyUnitsAndAxes) {
   std::ofstream(in("tile.obj")) << "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n";  // cm, z up
-  const Outcome grown = run("grow coat --strands 50 --mesh tile.obj --mesh-scale 0.01 --mesh-up z --write-mesh out.obj -o tile.pelage");
+  const Outcome grown =
+      run("grow coat --strands 50 --mesh tile.obj --mesh-scale 0.01 --mesh-up z --write-mesh out.obj -o tile.pelage");
   ASSERT_EQ(grown.status, 0) << grown.err;
   std::vector<std::array<float, 3>> vertices;
   std::ifstream written(in("out.obj"));
   for (std::string word; written >> word;)
     if (std::array<float, 3> v; word == "v" && written >> v[0] >> v[1] >> v[2]) vertices.push_back(v);
-  EXPECT_THAT(vertices, testing::UnorderedElementsAre(std::array{0.f, 0.f, 0.f}, std::array{1.f, 0.f, 0.f}, std::array{0.f, 0.f, -1.f}));
+  EXPECT_THAT(vertices,
+              testing::UnorderedElementsAre(std::array{0.f, 0.f, 0.f}, std::array{1.f, 0.f, 0.f}, std::array{0.f, 0.f, -1.f}));
 }
 
 TEST_F(Cli, GrowRefusesWhatItCannotDo) {

@@ -120,8 +120,8 @@ TEST_F(CliFiles, FailuresNameTheFileAndLeaveNothing) {
   const std::string whole = slurp(in("hair.pelage"));
   std::ofstream(in("cut.pelage"), std::ios::binary) << whole.substr(0, whole.size() / 2);
   for (const char* input : {"missing.hair", "noise.hair", "empty.hair", "cut.pelage"}) {
-    for (const std::string& line : {std::string("info ") + input, std::string("info --json ") + input,
-                                    std::string("convert ") + input + " out.pelage"}) {
+    for (const std::string& line :
+         {std::string("info ") + input, std::string("info --json ") + input, std::string("convert ") + input + " out.pelage"}) {
       const Outcome outcome = run(line);
       EXPECT_EQ(outcome.status, 1) << line;
       EXPECT_EQ(outcome.out, "") << line;

@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(root + "/" + name);
     return root + "/" + name + "/";
   };
-  const std::pair<const char*, const char*> formats[] = {{"cyhair", "cyhair"}, {"pelage", "pelage"},
-                                                         {"tressfx", "tressfx"}, {"usc", "usc"}};
+  const std::pair<const char*, const char*> formats[] = {
+      {"cyhair", "cyhair"}, {"pelage", "pelage"}, {"tressfx", "tressfx"}, {"usc", "usc"}};
   for (const auto& [target, format] : formats) {
     const std::string at = folder(target);
     write_strands(at + "small", groom(2, 3, false), format);

@@ -67,10 +67,8 @@ inline void read_sealed_groom(std::span<std::byte> bytes) {
 
 /// Calls the reader for a corpus file named `<reader>-<anything>`.
 inline void replay(std::string_view name, std::span<const std::byte> bytes) {
-  if (name.starts_with("mesh"))
-    read_mesh(bytes);
-  else
-    read_groom(bytes);
+  if (name.starts_with("mesh")) read_mesh(bytes);
+  else read_groom(bytes);
 }
 
 }  // namespace pelage::fuzz

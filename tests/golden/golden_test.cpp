@@ -32,8 +32,7 @@ std::vector<std::string> scene_names() {
 std::vector<std::uint8_t> bytes_of(const Image& display) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(display.pixels.size());
-  for (const float value : display.pixels)
-    bytes.push_back(static_cast<std::uint8_t>(std::clamp(value, 0.f, 1.f) * 255 + 0.5f));
+  for (const float value : display.pixels) bytes.push_back(static_cast<std::uint8_t>(std::clamp(value, 0.f, 1.f) * 255 + 0.5f));
   return bytes;
 }
 
@@ -103,8 +102,8 @@ TEST_P(Golden, LooksAsBlessed) {
     ADD_FAILURE() << "image, reference and difference (8x) are in " << folder;
   }
   EXPECT_LE(difference, kPerceptualBound);
-  EXPECT_EQ(hash, first_word(beside(".hash"))) << "mean difference " << difference
-                                               << "; if it is meant, tools/update_golden.sh " << GetParam();
+  EXPECT_EQ(hash, first_word(beside(".hash")))
+      << "mean difference " << difference << "; if it is meant, tools/update_golden.sh " << GetParam();
 }
 
 TEST_P(Golden, EveryInstructionSetAndThreadCountGivesTheSameBits) {
@@ -120,8 +119,7 @@ TEST_P(Golden, EveryInstructionSetAndThreadCountGivesTheSameBits) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scene, Golden, testing::ValuesIn(scene_names()),
-                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Scene, Golden, testing::ValuesIn(scene_names()), [](const auto& test) { return test.param; });
 
 }  // namespace
 }  // namespace pelage

@@ -49,8 +49,7 @@ inline void spill(const std::string& path, const std::string& bytes) {
 /// A file of the folder of real data, or "" where it is absent: then PELAGE_NEEDS skips the test.
 inline std::string real_file(const std::string& name) {
   const char* folder = std::getenv("PELAGE_DATA");
-  const std::filesystem::path path =
-      std::filesystem::path(folder ? folder : PELAGE_SOURCE_DIR "/../shared/data") / name;
+  const std::filesystem::path path = std::filesystem::path(folder ? folder : PELAGE_SOURCE_DIR "/../shared/data") / name;
   return std::filesystem::exists(path) ? path.string() : "";
 }
 
@@ -76,6 +75,6 @@ inline StrandSet full_groom(bool point_colors = true) {
 
 }  // namespace pelage::kit
 
-#define PELAGE_NEEDS(variable, name)                                                    \
-  const std::string variable = ::pelage::kit::real_file(name);                          \
+#define PELAGE_NEEDS(variable, name)                           \
+  const std::string variable = ::pelage::kit::real_file(name); \
   if (variable.empty()) GTEST_SKIP() << "PELAGE_DATA has no " << (name)

@@ -11,15 +11,9 @@ namespace pelage::oracle {
 struct V3 {
   double x, y, z;
 };
-inline V3 operator+(V3 a, V3 b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline V3 operator*(V3 a, double s) {
-  return {a.x * s, a.y * s, a.z * s};
-}
-inline double dot(V3 a, V3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+inline V3 operator+(V3 a, V3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline V3 operator*(V3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+inline double dot(V3 a, V3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Unpolarized reflectance; eta is the index behind the surface over the index in front.
 inline double reflectance(double cos_i, double eta) {
@@ -76,8 +70,7 @@ template <std::size_t kOrders>
 Fiber<kOrders> fiber(double cos_theta, double eta, double sigma_a, int offsets = 4000) {
   Fiber<kOrders> sum;
   for (int i = 0; i < offsets; ++i) {
-    const double gamma = (i + 0.5) / offsets * std::numbers::pi / 2,
-                 w = std::cos(gamma) * std::numbers::pi / 2 / offsets;
+    const double gamma = (i + 0.5) / offsets * std::numbers::pi / 2, w = std::cos(gamma) * std::numbers::pi / 2 / offsets;
     const auto exits = trace<kOrders>(cos_theta, std::sin(gamma), eta, sigma_a);
     for (std::size_t k = 0; k < kOrders; ++k) {
       sum.energy[k] += w * exits[k].energy;

@@ -19,9 +19,7 @@ PELAGE_FN RasterBand parity_band(Float a, Float b, Float c, Float d, Float e, Fl
   return raster_band(Vec2(a, b), Vec2(c, d), e, f, Float(1.0f), Float(2.0f), Vec2(across.y, Float(0.0f) - across.x),
                      Vec2(across.y, Float(0.0f) - across.x));
 }
-PELAGE_FN Vec4 parity_band_shape(RasterBand r) {
-  return Vec4(raster_band_center(r, Float(1.0f)), r.slope, r.first, r.last);
-}
+PELAGE_FN Vec4 parity_band_shape(RasterBand r) { return Vec4(raster_band_center(r, Float(1.0f)), r.slope, r.first, r.last); }
 
 PELAGE_FN Vec4 parity_harmonics_low(Vec3 n) {
   LightHarmonics h = light_harmonics(n);
@@ -39,8 +37,7 @@ PELAGE_FN ScatterFiber parity_fiber(Float beta_m, Float beta_n, Float eumelanin,
 PELAGE_FN ScatterLobes parity_lobes(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta, Float tilt) {
   return scatter_prepare_marschner(parity_fiber(beta_m, beta_n, eumelanin, eta, tilt), m_sin(theta_o), m_cos(theta_o));
 }
-PELAGE_FN ScatterLobes parity_lobes_zhu(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta,
-                                        Float tilt) {
+PELAGE_FN ScatterLobes parity_lobes_zhu(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta, Float tilt) {
   return scatter_prepare_zhu(parity_fiber(beta_m, beta_n, eumelanin, eta, tilt), m_sin(theta_o), m_cos(theta_o));
 }
 PELAGE_FN Vec4 parity_energies(ScatterLobes l) { return Vec4(l.a_r, l.a_tt.x, l.a_trt.y, l.a_rest.z); }

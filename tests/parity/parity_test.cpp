@@ -51,16 +51,15 @@ std::vector<Case> all_cases() {
 void evaluate_scalar(int wanted, const float* inputs, int samples, float* results) {
   using namespace kernel;
   int number = 0;
-#define PELAGE_PARITY(name, bound, ranges, expression)                                                        \
-  if (wanted == number++) {                                                                                   \
-    for (int i = 0; i < samples; ++i) {                                                                       \
-      [[maybe_unused]] const float a = inputs[i], b = inputs[samples + i], c = inputs[2 * samples + i],       \
-                                   d = inputs[3 * samples + i], e = inputs[4 * samples + i],                  \
-                                   f = inputs[5 * samples + i], g = inputs[6 * samples + i],                  \
-                                   h = inputs[7 * samples + i];                                               \
-      const Vec4 v = parity_result(expression);                                                               \
-      results[i] = v.x, results[samples + i] = v.y, results[2 * samples + i] = v.z, results[3 * samples + i] = v.w; \
-    }                                                                                                         \
+#define PELAGE_PARITY(name, bound, ranges, expression)                                                                    \
+  if (wanted == number++) {                                                                                               \
+    for (int i = 0; i < samples; ++i) {                                                                                   \
+      [[maybe_unused]] const float a = inputs[i], b = inputs[samples + i], c = inputs[2 * samples + i],                   \
+                                   d = inputs[3 * samples + i], e = inputs[4 * samples + i], f = inputs[5 * samples + i], \
+                                   g = inputs[6 * samples + i], h = inputs[7 * samples + i];                              \
+      const Vec4 v = parity_result(expression);                                                                           \
+      results[i] = v.x, results[samples + i] = v.y, results[2 * samples + i] = v.z, results[3 * samples + i] = v.w;       \
+    }                                                                                                                     \
   }
 #include "parity/parity_cases.inc"
 #undef PELAGE_PARITY
@@ -73,7 +72,8 @@ std::vector<float> make_inputs(const Case& test) {
   for (int k = 0; k < used; ++k) {
     const float lo = test.ranges[2 * k], hi = test.ranges[2 * k + 1];
     for (int i = 0; i < kSamples; ++i) {
-      const float u = i < (1 << used) ? static_cast<float>(i >> k & 1) : Rng(7, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k)).uniform();
+      const float u = i < (1 << used) ? static_cast<float>(i >> k & 1)
+                                      : Rng(7, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k)).uniform();
       inputs[k * kSamples + i] = u == 1 ? hi : lo + (hi - lo) * u;
     }
   }
@@ -118,7 +118,7 @@ constexpr std::uint32_t kShader[] = {
 
 struct Gpu {
   vulkan::Device device{{.name = "", .validation = true}};
-  vulkan::StorageBuffer inputs{device, kInputs * kSamples * sizeof(float)};
+  vulkan::StorageBuffer inputs{device, kInputs* kSamples * sizeof(float)};
   vulkan::StorageBuffer results{device, 4 * kSamples * sizeof(float)};
   vulkan::Program program{device, kShader, 2, 2 * sizeof(std::uint32_t)};
 };

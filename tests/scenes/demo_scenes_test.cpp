@@ -18,7 +18,8 @@ nlohmann::json thinned(const fs::path& file) {
   nlohmann::json scene = nlohmann::json::parse(std::ifstream(file));
   for (auto& groom : scene["grooms"]) groom["grow"]["strands"] = 300, groom["grow"]["clumps"] = 60;
   for (auto& mesh : scene["meshes"])
-    if (mesh.contains("file")) mesh["file"] = fs::weakly_canonical(file.parent_path() / mesh["file"].get<std::string>()).string();
+    if (mesh.contains("file"))
+      mesh["file"] = fs::weakly_canonical(file.parent_path() / mesh["file"].get<std::string>()).string();
   return scene;
 }
 

@@ -99,8 +99,7 @@ void Program::run(std::uint32_t groups, std::span<StorageBuffer* const> buffers,
   Device::Impl& d = *impl_->device;
   translated("running a program", [&] {
     const vk::raii::DescriptorSet set = impl_->bind(buffers);
-    vk::raii::CommandBuffers made(d.device,
-                                  vk::CommandBufferAllocateInfo(*d.commands, vk::CommandBufferLevel::ePrimary, 1));
+    vk::raii::CommandBuffers made(d.device, vk::CommandBufferAllocateInfo(*d.commands, vk::CommandBufferLevel::ePrimary, 1));
     const vk::raii::CommandBuffer& commands = made.front();
     commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, *impl_->pipeline);
@@ -110,8 +109,8 @@ void Program::run(std::uint32_t groups, std::span<StorageBuffer* const> buffers,
                                         {static_cast<std::uint32_t>(push.size()), push.data()});
     commands.dispatch(groups, 1, 1);
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eShaderWrite, vk::AccessFlagBits::eHostRead);
-    commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader, vk::PipelineStageFlagBits::eHost, {}, to_host,
-                             nullptr, nullptr);
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader, vk::PipelineStageFlagBits::eHost, {}, to_host, nullptr,
+                             nullptr);
     commands.end();
     const vk::raii::Fence done(d.device, vk::FenceCreateInfo());
     d.queue.submit(vk::SubmitInfo({}, {}, *commands), *done);

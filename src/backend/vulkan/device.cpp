@@ -22,8 +22,7 @@ vk::DebugUtilsMessengerCreateInfoEXT messenger_info(std::vector<std::string>* co
   return {{}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance, remember, complaints};
 }
 
-vk::raii::Instance make_instance(const vk::raii::Context& context, bool validation,
-                                 std::vector<std::string>* complaints) {
+vk::raii::Instance make_instance(const vk::raii::Context& context, bool validation, std::vector<std::string>* complaints) {
   const vk::ApplicationInfo application("pelage", 1, "pelage", 1, VK_API_VERSION_1_1);
   std::vector<const char*> layers, extensions;
   if (validation) {
@@ -98,8 +97,7 @@ Device::Device(const DeviceOptions& options) : impl_(translated("no loader", [] 
   Impl& s = *impl_;
   translated("making the instance", [&] {
     s.instance = make_instance(s.context, options.validation, &s.complaints);
-    if (options.validation)
-      s.messenger = vk::raii::DebugUtilsMessengerEXT(s.instance, messenger_info(&s.complaints));
+    if (options.validation) s.messenger = vk::raii::DebugUtilsMessengerEXT(s.instance, messenger_info(&s.complaints));
   });
   translated("choosing a device", [&] { s.physical = choose(s.instance, options.name); });
   s.name = name_of(s.physical);
@@ -110,8 +108,8 @@ Device::Device(const DeviceOptions& options) : impl_(translated("no loader", [] 
     const vk::DeviceQueueCreateInfo queue({}, s.queue_family, 1, &priority);
     s.device = vk::raii::Device(s.physical, vk::DeviceCreateInfo({}, queue));
     s.queue = s.device.getQueue(s.queue_family, 0);
-    s.commands = vk::raii::CommandPool(
-        s.device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eTransient, s.queue_family));
+    s.commands =
+        vk::raii::CommandPool(s.device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eTransient, s.queue_family));
   });
 }
 

@@ -11,31 +11,23 @@ PELAGE_FN Vec4 curve_linear_derivative(Float t) {
 // clang-format off: a line a control point
 PELAGE_FN Vec4 curve_catmull_rom_weights(Float t) {
   Float s = Float(1.0f) - t;
-  return Vec4(Float(-0.5f) * t * s * s,
-              Float(1.0f) + t * t * (Float(1.5f) * t - Float(2.5f)),
-              Float(1.0f) + s * s * (Float(1.5f) * s - Float(2.5f)),
-              Float(-0.5f) * s * t * t);
+  return Vec4(Float(-0.5f) * t * s * s, Float(1.0f) + t * t * (Float(1.5f) * t - Float(2.5f)),
+              Float(1.0f) + s * s * (Float(1.5f) * s - Float(2.5f)), Float(-0.5f) * s * t * t);
 }
 PELAGE_FN Vec4 curve_catmull_rom_derivative(Float t) {
-  return Vec4(Float(-0.5f) + t * (Float(2.0f) - Float(1.5f) * t),
-              t * (Float(4.5f) * t - Float(5.0f)),
-              Float(0.5f) + t * (Float(4.0f) - Float(4.5f) * t),
-              t * (Float(1.5f) * t - Float(1.0f)));
+  return Vec4(Float(-0.5f) + t * (Float(2.0f) - Float(1.5f) * t), t * (Float(4.5f) * t - Float(5.0f)),
+              Float(0.5f) + t * (Float(4.0f) - Float(4.5f) * t), t * (Float(1.5f) * t - Float(1.0f)));
 }
 
 PELAGE_FN Vec4 curve_bspline_weights(Float t) {
   Float s = Float(1.0f) - t;
   Float sixth = Float(0.166666666666667f);
-  return Vec4(sixth * s * s * s,
-              sixth * (Float(4.0f) + t * t * (Float(3.0f) * t - Float(6.0f))),
-              sixth * (Float(4.0f) + s * s * (Float(3.0f) * s - Float(6.0f))),
-              sixth * t * t * t);
+  return Vec4(sixth * s * s * s, sixth * (Float(4.0f) + t * t * (Float(3.0f) * t - Float(6.0f))),
+              sixth * (Float(4.0f) + s * s * (Float(3.0f) * s - Float(6.0f))), sixth * t * t * t);
 }
 PELAGE_FN Vec4 curve_bspline_derivative(Float t) {
   Float s = Float(1.0f) - t;
-  return Vec4(Float(-0.5f) * s * s,
-              t * (Float(1.5f) * t - Float(2.0f)),
-              Float(-1.0f) * s * (Float(1.5f) * s - Float(2.0f)),
+  return Vec4(Float(-0.5f) * s * s, t * (Float(1.5f) * t - Float(2.0f)), Float(-1.0f) * s * (Float(1.5f) * s - Float(2.0f)),
               Float(0.5f) * t * t);
 }
 // clang-format on
@@ -50,6 +42,4 @@ PELAGE_FN Vec4 curve_bezier_derivative(Float t) {
               Float(3.0f) * t * t);
 }
 
-PELAGE_FN Vec3 curve_combine(Vec4 w, Vec3 p0, Vec3 p1, Vec3 p2, Vec3 p3) {
-  return p0 * w.x + p1 * w.y + p2 * w.z + p3 * w.w;
-}
+PELAGE_FN Vec3 curve_combine(Vec4 w, Vec3 p0, Vec3 p1, Vec3 p2, Vec3 p3) { return p0 * w.x + p1 * w.y + p2 * w.z + p3 * w.w; }

@@ -54,9 +54,7 @@ PELAGE_FN Float m_log(Float x0) {
 }
 
 // x^y for x > 0, 0 for x <= 0. Error: kPowMaxRelError, growing with |y log x|.
-PELAGE_FN Float m_pow(Float x, Float y) {
-  return select(x > Float(0.0f), m_exp(y * m_log(x)), Float(0.0f));
-}
+PELAGE_FN Float m_pow(Float x, Float y) { return select(x > Float(0.0f), m_exp(y * m_log(x)), Float(0.0f)); }
 
 // sin and cos of r in [-pi/4, pi/4].
 PELAGE_FN Float m_sin_poly(Float r) {
@@ -76,8 +74,8 @@ PELAGE_FN Float m_cos_poly(Float r) {
 // x reduced to [-pi/4, pi/4]; quadrant n mod 4 in 0..3.
 PELAGE_FN Float m_quadrant(Float x) { return floor(x * Float(0.636619772367581f) + Float(0.5f)); }
 PELAGE_FN Float m_reduce(Float x, Float n) {
-  PELAGE_EXACT Float r = ((x - n * Float(1.5703125f)) - n * Float(4.837512969970703125e-4f)) -
-                         n * Float(7.54978995489188216e-8f);
+  PELAGE_EXACT Float r =
+      ((x - n * Float(1.5703125f)) - n * Float(4.837512969970703125e-4f)) - n * Float(7.54978995489188216e-8f);
   return r;
 }
 

@@ -22,18 +22,18 @@
 const float kRasterMiterLimit = 1.5f;
 
 struct RasterBand {
-  Mask x_major;       // u is x, v is y; otherwise u is y, v is x
-  Float u, v;         // start a
-  Float slope;        // m
+  Mask x_major;  // u is x, v is y; otherwise u is y, v is x
+  Float u, v;    // start a
+  Float slope;   // m
   Float half, half_slope;
   Float depth, depth_slope, depth_min, depth_max;
-  Float first, last;  // rule (3)
-  Vec2 cap_a, cap_b;  // in (u, v)
-  Float end_u, end_v; // end b
+  Float first, last;   // rule (3)
+  Vec2 cap_a, cap_b;   // in (u, v)
+  Float end_u, end_v;  // end b
 };
 
-PELAGE_FN RasterBand raster_band(Vec2 a, Vec2 b, Float radius_a, Float radius_b, Float depth_a, Float depth_b,
-                                 Vec2 cap_a, Vec2 cap_b) {
+PELAGE_FN RasterBand raster_band(Vec2 a, Vec2 b, Float radius_a, Float radius_b, Float depth_a, Float depth_b, Vec2 cap_a,
+                                 Vec2 cap_b) {
   RasterBand r;
   Float dx = b.x - a.x;
   Float dy = b.y - a.y;
@@ -81,9 +81,7 @@ PELAGE_FN Mask raster_between_caps(RasterBand r, Float u, Float v) {
 // Candidates of rule (1) for points at offset `at` (0.5 for pixel centers) in column s: rows j from this one on, as long
 // as raster_row_covered. Fast and plain rasterizers share these two expressions, hence the very same pixels.
 PELAGE_FN Float raster_first_row(Float center, Float half, Float at) { return ceil((center - half) - at); }
-PELAGE_FN Mask raster_row_covered(Float row, Float at, Float center, Float half) {
-  return (row + at) - center <= half;
-}
+PELAGE_FN Mask raster_row_covered(Float row, Float at, Float center, Float half) { return (row + at) - center <= half; }
 
 // Samples of one pixel share its depth, and c(s) and h(s) of its center's column; a sample off by (o_u, o_v) from there is
 // covered where

@@ -3,8 +3,7 @@
 // Absorption of melanin at concentrations as in HairMaterial.
 // d'Eon 2011, table 1 (references.bib: dEon2011Energy), after Donner & Jensen 2006.
 PELAGE_FN Vec3 scatter_melanin(Float eumelanin, Float pheomelanin) {
-  return Vec3(Float(0.419f) * eumelanin + Float(0.187f) * pheomelanin,
-              Float(0.697f) * eumelanin + Float(0.4f) * pheomelanin,
+  return Vec3(Float(0.419f) * eumelanin + Float(0.187f) * pheomelanin, Float(0.697f) * eumelanin + Float(0.4f) * pheomelanin,
               Float(1.37f) * eumelanin + Float(1.05f) * pheomelanin);
 }
 

@@ -1,25 +1,25 @@
 // Dual scattering: Zinke 2008 (references.bib: Zinke2008Dual), as in Huang 2025, section 3.2.
 // Derivations, and where we differ: docs/derivations/dual_scattering.md. All variances are of theta_i + theta_o.
 
-const float kDualDensity = 0.7f;  // d_f = d_b, Zinke 2008, section 4.1
+const float kDualDensity = 0.7f;        // d_f = d_b, Zinke 2008, section 4.1
 const float kBackEdgeSharpness = 6.0f;  // edge of the lit half circle: 10 to 90 % within 2.2/6 rad on both sides
 
-const float kDualAverageMaxAbsError = 6.0e-3f;    // a_f, a_b of scatter_averages against traced rays
-const float kAveragedPairMaxMisplaced = 0.035f;   // share of N^G's energy that the exact average has elsewhere
+const float kDualAverageMaxAbsError = 6.0e-3f;   // a_f, a_b of scatter_averages against traced rays
+const float kAveragedPairMaxMisplaced = 0.035f;  // share of N^G's energy that the exact average has elsewhere
 
 struct ScatterAverages {
-  Vec3 a_f;              // mean forward attenuation of a fiber
-  Vec3 a_b;              // mean backward attenuation
-  Float v_f;             // mean variance of what goes forward, radians^2
-  Float v_b;             //   backward
-  Float shift_f;         // mean shift, radians
+  Vec3 a_f;       // mean forward attenuation of a fiber
+  Vec3 a_b;       // mean backward attenuation
+  Float v_f;      // mean variance of what goes forward, radians^2
+  Float v_b;      //   backward
+  Float shift_f;  // mean shift, radians
   Float shift_b;
 };
 
 // The local backscatter A_B M_B of the hairs around and behind.
 struct ScatterBack {
-  Vec3 a;                // A_B = A_1 + A_3
-  ScatterCone cone;      // its spread and shift, of the mean channel
+  Vec3 a;            // A_B = A_1 + A_3
+  ScatterCone cone;  // its spread and shift, of the mean channel
 };
 
 // Averages over the front and back half circles of the lobes (Zinke 2008, eq. 6). `rest` is isotropic in azimuth.
@@ -61,16 +61,16 @@ PELAGE_FN Float scatter_back_energy(Float a_f, Float a_b) {
 // Zinke 2008, eq. 16 (shift) and 17 (standard deviation), for the mean channel.
 PELAGE_FN ScatterBack scatter_back(ScatterAverages m, ScatterLobes l) {
   ScatterBack b;
-  b.a = Vec3(scatter_back_energy(m.a_f.x, m.a_b.x), scatter_back_energy(m.a_f.y, m.a_b.y),
-             scatter_back_energy(m.a_f.z, m.a_b.z));
+  b.a =
+      Vec3(scatter_back_energy(m.a_f.x, m.a_b.x), scatter_back_energy(m.a_f.y, m.a_b.y), scatter_back_energy(m.a_f.z, m.a_b.z));
   Float third = Float(0.333333333333333f);
   Float a_f = (m.a_f.x + m.a_f.y + m.a_f.z) * third;
   Float a_b = (m.a_b.x + m.a_b.y + m.a_b.z) * third;
   Float f2 = a_f * a_f;
   Float b2 = a_b * a_b;
   Float k = Float(1.0f) / max(Float(1.0f) - f2, Float(1.0e-4f));
-  Float shift = m.shift_b * (Float(1.0f) - Float(2.0f) * b2 * k * k) +
-                m.shift_f * (Float(2.0f) * k + Float(4.0f) * f2 * b2 * k * k * k);
+  Float shift =
+      m.shift_b * (Float(1.0f) - Float(2.0f) * b2 * k * k) + m.shift_f * (Float(2.0f) * k + Float(4.0f) * f2 * b2 * k * k * k);
   // The formula is Zinke's, for deviations of theta_h: half of those of theta_i + theta_o.
   Float one = sqrt(Float(2.0f) * m.v_f + m.v_b);
   Float three = sqrt(Float(2.0f) * m.v_f + Float(3.0f) * m.v_b);

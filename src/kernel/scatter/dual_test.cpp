@@ -58,9 +58,7 @@ TEST(Dual, ForwardAndBackwardAveragesWithinTheirBoundOfTracedRays) {
           for (std::size_t k = 0; k < exits.size(); ++k) {
             total += w * exits[k].energy;
             // R is not blurred; paths after TRT leave uniformly.
-            const double share = k == 0  ? std::fabs(exits[k].phi) / kPiD
-                                 : k > 2 ? 0.5
-                                         : blurred_share(exits[k].phi, beta_n);
+            const double share = k == 0 ? std::fabs(exits[k].phi) / kPiD : k > 2 ? 0.5 : blurred_share(exits[k].phi, beta_n);
             exact += w * exits[k].energy * share;
           }
         }
@@ -82,8 +80,7 @@ TEST(Dual, BackscatterIsTheSumOverItsPaths) {
       for (int i = 1; i < 200; ++i) {
         sum += a_b * std::pow(a_f, 2 * i);
         for (int j = 0; j < i; ++j) {
-          for (int k = j + 1; k < 200; ++k)
-            sum += a_b * a_b * a_b * std::pow(static_cast<double>(a_f), 2 * (i - j - 1 + k));
+          for (int k = j + 1; k < 200; ++k) sum += a_b * a_b * a_b * std::pow(static_cast<double>(a_f), 2 * (i - j - 1 + k));
         }
       }
       EXPECT_NEAR(scatter_back_energy(a_f, a_b), sum, 1e-5 * sum) << a_f << " " << a_b;
@@ -110,11 +107,10 @@ TEST(Dual, ForwardAndLocalLobesIntegrateToTheirEnergies) {
         const ScatterLobes z = scatter_prepare_zhu(fiber_of(sigma), std::sin(theta), std::cos(theta));
         const ScatterBack b = scatter_back(scatter_averages(l), l);
         const double marschner = l.a_r + l.a_tt.y + l.a_trt.y + l.a_rest.y, zhu = z.a_r + z.a_tt.y + z.a_rest.y;
-        EXPECT_NEAR(
-            integrate([&](float s, float c, float p) { return scatter_dual_forward_marschner(l, v, s, c, p).y; }),
-            marschner, 0.01 * marschner);
-        EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_forward_zhu(z, v, s, c, p).y; }),
-                    zhu, 0.01 * zhu);
+        EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_forward_marschner(l, v, s, c, p).y; }),
+                    marschner, 0.01 * marschner);
+        EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_forward_zhu(z, v, s, c, p).y; }), zhu,
+                    0.01 * zhu);
         EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_local(b, v, s, c, p).y; }),
                     2 * kDualDensity * b.a.y, 0.01 * 2 * kDualDensity * b.a.y);
       }
@@ -165,16 +161,15 @@ Furnace half_space(float sigma_a) {
     const float n = static_cast<float>(-std::log1p(-seen));
     const float v = scatter_dual_variance(n, a.v_f);
     const float direct = scatter_dual_direct(n), through = scatter_dual_transmittance(n, a.a_f).x;
-    furnace.dual +=
-        integrate(
-            [&](float s, float c, float p) {
-              const float f =
-                  (scatter_marschner(l, s, c, p).x + scatter_dual_local(b, 0, s, c, p).x) * direct +
-                  (scatter_dual_forward_marschner(l, v, s, c, p).x + scatter_dual_local(b, v, s, c, p).x) * through;
-              return f * (1 - std::acos(p) / kPiD);
-            },
-            kPiD, 60, 120) /
-        kDepths;
+    furnace.dual += integrate(
+                        [&](float s, float c, float p) {
+                          const float f =
+                              (scatter_marschner(l, s, c, p).x + scatter_dual_local(b, 0, s, c, p).x) * direct +
+                              (scatter_dual_forward_marschner(l, v, s, c, p).x + scatter_dual_local(b, v, s, c, p).x) * through;
+                          return f * (1 - std::acos(p) / kPiD);
+                        },
+                        kPiD, 60, 120) /
+                    kDepths;
   }
   const double k = 1 - a.a_f.x, s = a.a_b.x;
   furnace.two_flux = (k - std::sqrt(std::max(k * k - s * s, 0.0))) / s;

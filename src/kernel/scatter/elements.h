@@ -49,12 +49,12 @@ PELAGE_FN Float scatter_half_circle(Float sharpness, Float cos_phi) {
 // A longitudinal lobe as seen from theta_o: M(theta_i, theta_o - shift), d'Eon 2011 (references.bib: dEon2011Energy).
 // Integral of M cos(theta_i) d theta_i = 1 for every theta_o, shift and variance.
 struct ScatterCone {
-  Float sin_o;           // of theta_o - shift
-  Float cos_o;           // its absolute value: I0 is even
-  Float shift;           // where M peaks: theta_i + theta_o, radians
-  Float v;               // variance of theta_i + theta_o, radians^2
+  Float sin_o;  // of theta_o - shift
+  Float cos_o;  // its absolute value: I0 is even
+  Float shift;  // where M peaks: theta_i + theta_o, radians
+  Float v;      // variance of theta_i + theta_o, radians^2
   Float inv_v;
-  Float norm;            // 1/(v (1 - e^(-2/v)))
+  Float norm;  // 1/(v (1 - e^(-2/v)))
 };
 
 PELAGE_FN ScatterCone scatter_cone_with_variance(ScatterCone c0, Float v) {

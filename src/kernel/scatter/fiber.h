@@ -7,42 +7,42 @@
 // Derivations: docs/derivations/marschner.md.
 
 const float kLobeEnergyMaxAbsError = 4.5e-4f;  // a_r, a_tt, a_trt, a_rest against converged quadrature over h
-const float kPairMaxMisplaced = 0.075f;       // share of a pair's energy that the exact N has elsewhere; v_n >= (10 deg)^2
+const float kPairMaxMisplaced = 0.075f;        // share of a pair's energy that the exact N has elsewhere; v_n >= (10 deg)^2
 
 struct ScatterFiber {
-  Vec3 sigma_a;          // absorption per fiber radius, >= 0
-  Float eta;             // index of refraction, > 1
-  Float gain_r;          // multiplies R; 1 is physical
-  Float v_r;             // variance of theta_i + theta_o of M_R, radians^2; > 0
-  Float v_tt;            //   of M_TT
-  Float v_trt;           //   of M_TRT
-  Float v_n;             // variance of the azimuthal blur, radians^2; >= 0
-  Float tilt;            // alpha, radians
+  Vec3 sigma_a;  // absorption per fiber radius, >= 0
+  Float eta;     // index of refraction, > 1
+  Float gain_r;  // multiplies R; 1 is physical
+  Float v_r;     // variance of theta_i + theta_o of M_R, radians^2; > 0
+  Float v_tt;    //   of M_TT
+  Float v_trt;   //   of M_TRT
+  Float v_n;     // variance of the azimuthal blur, radians^2; >= 0
+  Float tilt;    // alpha, radians
 };
 
 // An azimuthal lobe: two equal von Mises distributions at +mu and -mu (from phi = 0, or from phi = pi for TT).
 struct ScatterPair {
   Float kappa;
   Float cos_mu;
-  Float sin_mu;          // >= 0
-  Float norm;            // 1/(4 pi I0e(kappa)): integral over phi of both is 1
+  Float sin_mu;  // >= 0
+  Float norm;    // 1/(4 pi I0e(kappa)): integral over phi of both is 1
 };
 
 struct ScatterLobes {
   ScatterCone r;
   ScatterCone tt;
   ScatterCone trt;
-  Float sin_o;           // of theta_o itself
+  Float sin_o;  // of theta_o itself
   Float cos_o;
   Float eta;
   Float gain_r;
-  Float a_r;             // energies: integrals over the sphere
+  Float a_r;  // energies: integrals over the sphere
   Vec3 a_tt;
   Vec3 a_trt;
-  Vec3 a_rest;           // every path after TRT: leaves uniformly in azimuth
-  ScatterPair n_tt;      // around phi = pi
-  ScatterPair n_trt;     // around phi = 0
-  Float front_r;         // share of each lobe that goes on forward, averaged over the half circle (dual_scattering.md)
+  Vec3 a_rest;        // every path after TRT: leaves uniformly in azimuth
+  ScatterPair n_tt;   // around phi = pi
+  ScatterPair n_trt;  // around phi = 0
+  Float front_r;      // share of each lobe that goes on forward, averaged over the half circle (dual_scattering.md)
   Float front_tt;
   Float front_trt;
 };
@@ -70,9 +70,9 @@ struct ScatterSums {
   Vec3 a_trt;
   Vec3 a_rest;
   Float front_r;
-  Vec3 tt;               // energy of TT over all channels times u, u^2 and the share that goes forward; u = 1 - cos x,
-                         // x the exit angle from phi = pi
-  Vec3 trt;              // the same of TRT, x from phi = 0
+  Vec3 tt;   // energy of TT over all channels times u, u^2 and the share that goes forward; u = 1 - cos x,
+             // x the exit angle from phi = pi
+  Vec3 trt;  // the same of TRT, x from phi = 0
 };
 
 // One channel of one offset: (TT, TRT, rest) for the transmittance t of one crossing. Marschner 2003, eq. 8.

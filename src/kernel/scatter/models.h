@@ -11,9 +11,7 @@ PELAGE_FN Float scatter_pair_value(ScatterPair n, Float cos_phi, Float sin_phi, 
 }
 
 // sin(phi) >= 0: every lobe is even in phi.
-PELAGE_FN Float scatter_sin_phi(Float cos_phi) {
-  return sqrt(max(Float(1.0f) - cos_phi * cos_phi, Float(0.0f)));
-}
+PELAGE_FN Float scatter_sin_phi(Float cos_phi) { return sqrt(max(Float(1.0f) - cos_phi * cos_phi, Float(0.0f))); }
 
 // N_R = F(h) |dh/dphi|/2 with h = sin(phi/2): Marschner 2003, eq. 7 and 8. Integral over phi: a_r.
 PELAGE_FN Float scatter_reflection(ScatterLobes l, Float cos_phi) {

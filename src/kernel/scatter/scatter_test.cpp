@@ -28,8 +28,7 @@ double sphere_integral(const Lobe& lobe, double center, double deviation, int th
     const double theta = lo + (hi - lo) * (i + 0.5) / thetas;
     const float s = static_cast<float>(std::sin(theta)), c = static_cast<float>(std::cos(theta));
     double ring = 0;
-    for (int j = 0; j < phis / 2; ++j)
-      ring += 2 * lobe(s, c, static_cast<float>(std::cos(2 * kPiD * (j + 0.5) / phis)));
+    for (int j = 0; j < phis / 2; ++j) ring += 2 * lobe(s, c, static_cast<float>(std::cos(2 * kPiD * (j + 0.5) / phis)));
     sum += ring * std::cos(theta);
   }
   return sum * (hi - lo) / thetas * 2 * kPiD / phis;
@@ -39,9 +38,8 @@ struct Parameters {
   float eta, beta_m, beta_n, tilt, sigma_a, theta_o;
   ScatterFiber fiber() const { return scatter_fiber(eta, beta_m, beta_n, tilt, 1, {sigma_a, sigma_a, sigma_a}); }
   std::string name() const {
-    return "eta " + std::to_string(eta) + " beta_m " + std::to_string(beta_m) + " beta_n " + std::to_string(beta_n) +
-           " tilt " + std::to_string(tilt) + " sigma_a " + std::to_string(sigma_a) + " theta_o " +
-           std::to_string(theta_o);
+    return "eta " + std::to_string(eta) + " beta_m " + std::to_string(beta_m) + " beta_n " + std::to_string(beta_n) + " tilt " +
+           std::to_string(tilt) + " sigma_a " + std::to_string(sigma_a) + " theta_o " + std::to_string(theta_o);
   }
 };
 
@@ -110,8 +108,7 @@ TEST(Scatter, EveryLobeIntegratesToItsEnergy) {
     ScatterLobes none = l;
     none.gain_r = none.a_r = 0;
     none.a_tt = none.a_trt = none.a_rest = Vec3(0, 0, 0);
-    const auto check = [&](const char* name, const ScatterLobes& only, const ScatterCone& cone, double energy,
-                           auto&& model) {
+    const auto check = [&](const char* name, const ScatterLobes& only, const ScatterCone& cone, double energy, auto&& model) {
       const Lobe lobe = [&](float si, float ci, float cp) { return model(only, si, ci, cp).y; };
       const double got = sphere_integral(lobe, cone.shift - s.theta_o, std::sqrt(cone.v));
       ASSERT_NEAR(got, energy, 0.01 * energy + 1e-7) << name << ": " << s.name();
@@ -196,8 +193,8 @@ TEST(Scatter, AzimuthalShapeWithinItsBound) {
       for (const float beta_n : {0.17f, 0.26f, 0.6f}) {
         for (const std::size_t order : {1u, 2u}) {
           const double d = shape_distance(1.55f, theta, sigma_a, beta_n, order);
-          EXPECT_LE(d, kPairMaxMisplaced)
-              << "theta " << theta << " sigma_a " << sigma_a << " beta_n " << beta_n << " order " << order;
+          EXPECT_LE(d, kPairMaxMisplaced) << "theta " << theta << " sigma_a " << sigma_a << " beta_n " << beta_n << " order "
+                                          << order;
           worst = std::max(worst, d);
         }
       }

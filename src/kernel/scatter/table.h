@@ -1,13 +1,13 @@
 // Where to look in the table of mean forward attenuation a_f(cos theta, sigma_a) (shade/dual_scattering_tables.h): the
 // caller fetches four neighbors, each target in its own way. One scalar table serves every color, strand and channel.
 
-const float kScatterTableRows = 65.0f;          // cos theta = row/(rows - 1)
-const float kScatterTableColumns = 65.0f;       // e^(-sigma_a/2) = column/(columns - 1)
+const float kScatterTableRows = 65.0f;           // cos theta = row/(rows - 1)
+const float kScatterTableColumns = 65.0f;        // e^(-sigma_a/2) = column/(columns - 1)
 const float kScatterTableMaxAbsError = 2.0e-3f;  // of a_f, against adaptive quadrature; everywhere but cos theta < 0.02
 
 struct ScatterTableCell {
-  Float index;           // of the corner (row, column) in row-major order: a whole number
-  Float row;             // weights of the next row and the next column, [0, 1]
+  Float index;  // of the corner (row, column) in row-major order: a whole number
+  Float row;    // weights of the next row and the next column, [0, 1]
   Float column;
 };
 
