@@ -3,7 +3,7 @@
 
 # To build the library and the command.
 PELAGE_BUILD_PACKAGES="g++ cmake ninja-build
-  libtbb-dev libhwy-dev libfmt-dev libembree-dev libopenimageio-dev nlohmann-json3-dev libcli11-dev"
+  libtbb-dev libhwy-dev libfmt-dev libembree-dev libopenimageio-dev libpng-dev nlohmann-json3-dev libcli11-dev"
 
 # To run the tests: test frameworks, lints, the software Vulkan driver that stands in for a GPU.
 PELAGE_TEST_PACKAGES="libgtest-dev libgmock-dev python3 clang-format

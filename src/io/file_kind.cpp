@@ -22,11 +22,16 @@ bool has_faces(const ByteSource& source) {
 
 }  // namespace
 
-FileKind file_kind(const ByteSource& source) {
+std::string image_format(const ByteSource& source) {
   std::string head(std::min<std::uint64_t>(source.size(), 16), '\0');
   source.read(0, head.size(), head.data(), "magic");
   for (const auto& [magic, name] : kImages)
-    if (head.starts_with(magic)) return {FileContent::kImage, name};
+    if (head.starts_with(magic)) return name;
+  return "";
+}
+
+FileKind file_kind(const ByteSource& source) {
+  if (const std::string image = image_format(source); !image.empty()) return {FileContent::kImage, image};
   for (const StrandFormat* format : strand_registry())
     if (format->mismatch(source).empty()) return {};
   const std::string mesh = detect_mesh_format(source);

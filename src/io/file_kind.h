@@ -14,6 +14,9 @@ struct FileKind {
   std::string format;  ///< "exr", "ply", …; empty for grooms, whose reader says it best
 };
 
+/// "exr", "png", "hdr" or "jpeg" by the first bytes; "" for anything else.
+std::string image_format(const ByteSource& source);
+
 /// Looks at the first bytes, and at the text for the faces that make an OBJ. What is neither mesh nor image counts as a
 /// groom, whose reader explains what it tried.
 FileKind file_kind(const ByteSource& source);

@@ -1,4 +1,4 @@
-// Pictures in and out through OpenImageIO.
+// Pictures in and out through OpenImageIO; PNG files come in through libpng (image_png.h).
 #include <pelage/error.h>
 #include <pelage/io.h>
 
@@ -7,17 +7,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
+#include <cstdint>
 
 #include "io/atomic_file.h"
 #include "io/byte_source.h"
+#include "io/file_kind.h"
+#include "io/image_png.h"
 
 namespace pelage {
 namespace {
 
 constexpr int kMaxSide = 1 << 16;
+// A file that states a larger picture must itself be a fair part of that: memory is not asked for on the word of a few bytes.
+constexpr std::uint64_t kAlwaysRead = 1 << 30, kMostPacked = 2048;
 
 float srgb_to_linear(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
 
@@ -32,21 +35,6 @@ void linearize_colors(Image& image) {
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-// A PNG must reach its last chunk: libpng would tell the user of the terminal about one that does not, instead of us.
-void check_png_is_whole(const io::ByteSource& source) {
-  constexpr std::string_view kMagic = "\x89PNG\r\n\x1a\n";
-  std::string head(std::min<std::uint64_t>(source.size(), kMagic.size()), '\0');
-  source.read(0, head.size(), head.data(), "magic");
-  if (head != kMagic) return;
-  for (std::uint64_t at = kMagic.size();;) {  // chunk: big-endian bytes of data, four letters, data, checksum
-    const auto b = source.get<std::array<unsigned char, 8>>(at, "PNG chunk");
-    const std::uint64_t bytes = std::uint64_t{b[0]} << 24 | std::uint64_t{b[1]} << 16 | std::uint64_t{b[2]} << 8 | b[3];
-    source.require(at, 12 + bytes, "PNG chunk");
-    if (b[4] == 'I' && b[5] == 'E' && b[6] == 'N' && b[7] == 'D') return;
-    at += 12 + bytes;
-  }
-}
 
 std::string lower_extension(const std::string& path) {
   const std::size_t dot = path.find_last_of("./");
@@ -76,25 +64,35 @@ OIIO::ImageSpec make_spec(const std::string& path, const Image& image, const std
   return spec;
 }
 
-}  // namespace
-
-Image read_image(const std::string& path, bool linearize) {
-  check_png_is_whole(io::ByteSource::open(path));  // which says best why a file cannot be read
+Image read_by_oiio(const io::ByteSource& source) {
+  const std::string& path = source.name();
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes);
   if (!input) throw Error(path, "", first_line(OIIO::geterror()), "EXR, PNG and Radiance HDR are read");
   const OIIO::ImageSpec& spec = input->spec();
+  const std::string size =
+      fmt::format("{} × {} × {} pixels of {} channels", spec.width, spec.height, spec.depth, spec.nchannels);
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.width > kMaxSide || spec.height > kMaxSide ||
       spec.depth > 1)
-    throw Error(path, "",
-                fmt::format("{} × {} × {} pixels of {} channels", spec.width, spec.height, spec.depth, spec.nchannels),
-                "at most 65536 × 65536 are read");
-  const bool encoded = spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.format.basetype == OIIO::TypeDesc::UINT16;
+    throw Error(path, "", size, "at most 65536 × 65536 are read");
+  if (spec.image_bytes() > kAlwaysRead && spec.image_bytes() / kMostPacked > source.size())
+    throw Error(path, "", fmt::format("{} cannot be in {} bytes", size, source.size()), "the file is truncated or damaged");
   Image image(spec.width, spec.height, spec.channelnames);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
     throw Error(path, "pixels", first_line(input->geterror()), "the file is truncated or damaged");
-  if (linearize && encoded) linearize_colors(image);
+  return image;
+}
+
+}  // namespace
+
+Image read_image(const std::string& path, bool linearize) {
+  const io::ByteSource source = io::ByteSource::open(path);  // which says best why a file cannot be read
+  const std::string format = io::image_format(source);
+  if (format.empty()) throw Error(path, "", "not a picture", "EXR, PNG and Radiance HDR are read");
+  if (format == "exr" || format == "hdr") return read_by_oiio(source);
+  Image image = format == "png" ? io::read_png(source) : read_by_oiio(source);
+  if (linearize) linearize_colors(image);
   return image;
 }
 

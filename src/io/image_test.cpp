@@ -1,8 +1,10 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pelage/error.h>
 #include <pelage/io.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "kit/io_kit.h"
 
@@ -140,6 +142,118 @@ TEST(Images, ACutPngIsAnErrorAndNothingIsPrinted) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   kit::spill(folder / "a.png", whole + "after the end");
   EXPECT_EQ(read_image(folder / "a.png").width, 17);
+}
+
+TEST(Images, DamageAnywhereIsAnErrorOrAPictureAndNothingIsPrinted) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"a.png", "a.exr", "a.hdr"}) {
+    write_image(folder / name, pattern({"R", "G", "B"}));
+    const std::string whole = kit::slurp(folder / name);
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+      std::string damaged = whole;
+      damaged[at] = static_cast<char>(damaged[at] ^ (1 << at % 8));
+      kit::spill(folder / name, damaged);
+      try {
+        const Image image = read_image(folder / name);
+        EXPECT_EQ(image.pixels.size(),
+                  static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * image.channel_count());
+      } catch (const Error& e) {
+        EXPECT_EQ(e.where(), folder / name) << "byte " << at;
+      }
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "") << name;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << name;
+  }
+}
+
+// PNG files made by hand: what no writer of ours makes.
+
+std::string big_endian(std::uint32_t x) {
+  return {static_cast<char>(x >> 24), static_cast<char>(x >> 16), static_cast<char>(x >> 8), static_cast<char>(x)};
+}
+
+std::string png_chunk(const std::string& name, const std::string& data) {
+  std::uint32_t crc = ~0u;  // RFC 2083, appendix 15
+  for (const char c : name + data) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = crc & 1 ? crc >> 1 ^ 0xEDB88320u : crc >> 1;
+  }
+  return big_endian(static_cast<std::uint32_t>(data.size())) + name + data + big_endian(~crc);
+}
+
+// A deflate stream of one stored block.
+std::string zlib_stored(const std::string& data) {
+  std::uint32_t a = 1, b = 0;
+  for (const char c : data) a = (a + static_cast<unsigned char>(c)) % 65521, b = (b + a) % 65521;
+  const auto size = static_cast<std::uint16_t>(data.size());
+  const auto pair = [](unsigned v) { return std::string{static_cast<char>(v), static_cast<char>(v >> 8)}; };
+  return "\x78\x01\x01" + pair(size) + pair(~unsigned{size}) + data + big_endian(b << 16 | a);
+}
+
+std::string png(std::uint32_t width, std::uint32_t height, char depth, char color, const std::string& between,
+                const std::string& rows) {
+  return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", big_endian(width) + big_endian(height) + std::string{depth, color, 0, 0, 0}) +
+         between + png_chunk("IDAT", zlib_stored(rows)) + png_chunk("IEND", "");
+}
+
+Image read_bytes(const std::string& bytes) {
+  const TemporaryFolder folder;
+  kit::spill(folder / "a.png", bytes);
+  return read_image(folder / "a.png", false);
+}
+
+TEST(Images, PngOfAFewBitsAndOfAPaletteIsExpanded) {
+  const Image bits = read_bytes(png(3, 2, 1, 0, "", std::string("\0\xA0\0\x40", 4)));
+  EXPECT_EQ(bits.channels, std::vector<std::string>{"Y"});
+  EXPECT_EQ(bits.pixels, (std::vector<float>{1, 0, 1, 0, 1, 0}));
+
+  const std::string palette = png_chunk("PLTE", std::string("\xFF\0\0\0\xFF\0", 6));
+  const Image colors = read_bytes(png(2, 1, 8, 3, palette, std::string("\0\1\0", 3)));
+  EXPECT_EQ(colors.channels, (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(colors.pixels, (std::vector<float>{0, 1, 0, 1, 0, 0}));
+
+  const Image see_through =
+      read_bytes(png(2, 1, 8, 3, palette + png_chunk("tRNS", std::string("\x33", 1)), std::string("\0\1\0", 3)));
+  EXPECT_EQ(see_through.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+  EXPECT_EQ(see_through.pixels, (std::vector<float>{0, 1, 0, 1, 1, 0, 0, 0.2f}));
+}
+
+TEST(Images, PngOfSixteenBitsAndAlpha) {
+  const Image image = read_bytes(png(1, 1, 16, 4, "", std::string("\0\x33\x33\xFF\xFF", 5)));
+  EXPECT_EQ(image.channels, (std::vector<std::string>{"Y", "A"}));
+  EXPECT_EQ(image.pixels, (std::vector<float>{0.2f, 1}));
+}
+
+TEST(Images, ADamagedChunkBesideThePixelsIsNoNews) {
+  const std::string rows("\0\x33", 2);
+  std::string gamma = png_chunk("gAMA", big_endian(45455)), text = png_chunk("tEXt", std::string("a\0b", 3));
+  gamma.back() ^= 1, text.back() ^= 1;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(read_bytes(png(1, 1, 8, 0, gamma + text + png_chunk("iCCP", "no profile"), rows)).pixels, std::vector<float>{0.2f});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Images, APngThatCannotHoldItsPixelsIsRefusedBeforeMemoryIsAskedFor) {
+  try {
+    read_bytes(png(65536, 65536, 16, 6, "", std::string(9, '\0')));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("65536 × 65536 pixels cannot be in"));
+  }
+  EXPECT_THROW(read_bytes(png(65537, 1, 1, 0, "", "\0")), Error);
+}
+
+TEST(Images, OnlyPicturesAreOffered) {
+  const TemporaryFolder folder;
+  kit::spill(folder / "a.png", "P6 1 1 255 abc");  // a format that OpenImageIO reads too
+  try {
+    read_image(folder / "a.png");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("EXR, PNG and Radiance HDR are read"));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,124 @@
+#include "io/image_png.h"
+
+#include <fmt/format.h>
+#include <pelage/error.h>
+#include <png.h>
+
+#include <bit>
+#include <csetjmp>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace pelage::io {
+namespace {
+
+constexpr png_uint_32 kMaxSide = 1 << 16;
+constexpr std::uint64_t kMostPacked = 1032;  // bytes that one byte of a deflate stream can stand for
+
+// What libpng's callbacks see. Trivial, because they leave by longjmp.
+struct Stream {
+  const char* bytes;
+  std::size_t size, at;
+  char problem[128];
+};
+
+void fetch(png_structp png, png_bytep target, std::size_t bytes) {
+  Stream& s = *static_cast<Stream*>(png_get_io_ptr(png));
+  if (bytes > s.size - s.at) png_error(png, "the file ends early");
+  std::memcpy(target, s.bytes + s.at, bytes);
+  s.at += bytes;
+}
+
+[[noreturn]] void note_error(png_structp png, png_const_charp what) {
+  Stream& s = *static_cast<Stream*>(png_get_error_ptr(png));
+  std::strncpy(s.problem, what, sizeof s.problem - 1);
+  png_longjmp(png, 1);
+}
+
+// Damage that leaves every pixel as it was written is no news to anybody.
+void ignore_warning(png_structp, png_const_charp) {}
+
+class PngReader {
+ public:
+  explicit PngReader(const ByteSource& source) : name_(source.name()), bytes_(source.read_all()) {
+    stream_ = {bytes_.data(), bytes_.size(), 0, {}};
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &stream_, note_error, ignore_warning);
+    if (png_) info_ = png_create_info_struct(png_);
+    if (!info_) fail("libpng cannot start");
+    png_set_read_fn(png_, &stream_, fetch);
+  }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+  Image read() {
+    read_header();
+    const std::size_t row = png_get_rowbytes(png_, info_), height = png_get_image_height(png_, info_);
+    std::vector<png_byte> bytes(row * height);
+    std::vector<png_bytep> rows(height);
+    for (std::size_t y = 0; y < height; ++y) rows[y] = bytes.data() + y * row;
+    guarded([&] {
+      png_read_image(png_, rows.data());
+      png_read_end(png_, nullptr);
+    });
+    return to_floats(bytes);
+  }
+
+ private:
+  // Runs libpng's functions. Their errors come back here over frames that own nothing.
+  template <class Calls>
+  void guarded(const Calls& calls) {
+    if (setjmp(png_jmpbuf(png_)) == 0) calls();
+    else fail(stream_.problem);
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(name_, fmt::format("byte {}", stream_.at), problem, "the PNG file is truncated or damaged");
+  }
+
+  void read_header() {
+    guarded([this] {
+      png_set_user_limits(png_, kMaxSide, kMaxSide);
+      png_read_info(png_, info_);
+      png_set_expand(png_);
+      if constexpr (std::endian::native == std::endian::little) png_set_swap(png_);
+      png_set_interlace_handling(png_);
+    });
+    // Before expansion, as the rows stand in the file, behind a byte that says how the row was filtered.
+    const std::uint64_t rows = png_get_image_height(png_, info_), row = png_get_rowbytes(png_, info_);
+    if (rows * row / kMostPacked > bytes_.size())
+      fail(fmt::format("{} × {} pixels cannot be in {} bytes", png_get_image_width(png_, info_), rows, bytes_.size()));
+    guarded([this] { png_read_update_info(png_, info_); });
+  }
+
+  Image to_floats(const std::vector<png_byte>& bytes) const {
+    const std::vector<std::string> names[] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    Image image(static_cast<int>(png_get_image_width(png_, info_)), static_cast<int>(png_get_image_height(png_, info_)),
+                names[png_get_channels(png_, info_) - 1]);
+    if (png_get_bit_depth(png_, info_) == 8) {
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(bytes[i]) / 255;
+      return image;
+    }
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      std::uint16_t value;
+      std::memcpy(&value, bytes.data() + 2 * i, sizeof value);
+      image.pixels[i] = static_cast<float>(value) / 65535;
+    }
+    return image;
+  }
+
+  std::string name_;
+  std::vector<char> bytes_;
+  Stream stream_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+};
+
+}  // namespace
+
+Image read_png(const ByteSource& source) { return PngReader(source).read(); }
+
+}  // namespace pelage::io
