@@ -14,12 +14,12 @@
 #include "core/mesh_tracer.h"
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "frame/fiber.h"
 #include "grooms.h"
 #include "light/light.h"
 #include "raster/raster.h"
 #include "raster/sample_positions.h"
 #include "shade/evaluate.h"
-#include "shade/fiber.h"
 
 namespace pelage::bench {
 namespace {

@@ -26,6 +26,7 @@ LAYERS = {
     **{stage: {"core", "kernel", "frame", stage} for stage in STAGES},
     "frame": {"core", "kernel", "frame"} | STAGES,
     "metrics": {"core", "io", "metrics"},
+    "reference": {"core", "kernel", "io", "frame", "reference"},
     "backend": {"core", "kernel", "frame", "backend"},
 }
 FRAME_HEADERS = {"core", "kernel", "frame"}

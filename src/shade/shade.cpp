@@ -4,10 +4,10 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "frame/fiber.h"
 #include "frame/segment_lookup.h"
 #include "shade/batch.h"
 #include "shade/evaluate.h"
-#include "shade/fiber.h"
 #include "shade/visible.h"
 
 namespace pelage {

@@ -10,13 +10,13 @@
 
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "frame/fiber.h"
 #include "frame/light_lookup.h"
 #include "frame/segment_lookup.h"
 #include "kernel/scalar.h"
 #include "light/light.h"
 #include "raster/sample_positions.h"
 #include "shade/evaluate.h"
-#include "shade/fiber.h"
 #include "shade/visible.h"
 
 namespace pelage {

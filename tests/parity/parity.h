@@ -4,6 +4,7 @@ const float kParityRounding = 1.0e-6f;  // GLSL may contract a·b + c and divide
 const float kParityPow = 4.0e-6f;       // e^(y·log x): the error of the logarithm grows with y
 const float kParityScatter = 4.0e-6f;   // some ten roundings and elementary functions in a row
 const float kParityLobe = 5.0e-5f;      // exponents and concentrations of narrow lobes multiply those errors
+const float kParityDraw = 1.0e-4f;      // densities are steep: the error of a direction comes back multiplied
 const float kParityArea = 1.0e-5f;      // roundings of a band's height, some pixels, against an area below 1
 const float kParityGgx = 1.0e-5f;       // the narrow peak multiplies the error of the half vector
 
@@ -56,4 +57,22 @@ PELAGE_FN Float parity_table(Float cos_theta, Float sigma_a) {
 }
 PELAGE_FN Vec3 parity_local(ScatterLobes l, Float v, Float theta_i, Float cos_phi) {
   return scatter_dual_local(scatter_back(scatter_averages(l), l), v, m_sin(theta_i), m_cos(theta_i), cos_phi);
+}
+
+// A drawn direction and its density; the last of u is taken from c. Azimuths as cosines: a whole turn more is the same.
+PELAGE_FN Vec4 parity_drawn(ScatterDirection d, Float pdf) { return Vec4(d.sin_i, m_cos(d.phi), d.lobe, pdf); }
+PELAGE_FN Vec4 parity_draw_marschner(ScatterLobes l, Vec4 u) {
+  ScatterChoice c = scatter_choice_of(l);
+  ScatterDirection d = scatter_sample_marschner(l, c, u);
+  return parity_drawn(d, scatter_pdf_marschner(l, c, d.sin_i, d.cos_i, d.phi));
+}
+PELAGE_FN Vec4 parity_draw_zhu(ScatterLobes l, Vec4 u) {
+  ScatterChoice c = scatter_choice_of(l);
+  ScatterDirection d = scatter_sample_zhu(l, c, u);
+  return parity_drawn(d, scatter_pdf_zhu(l, c, d.sin_i, d.cos_i, d.phi));
+}
+PELAGE_FN Vec4 parity_draw_kajiya_kay(ScatterLobes l, Vec4 u) {
+  ScatterChoice c = scatter_choice_kajiya_kay(l, Vec3(Float(0.5f), Float(0.3f), Float(0.2f)));
+  ScatterDirection d = scatter_sample_kajiya_kay(l, c, u);
+  return parity_drawn(d, scatter_pdf_kajiya_kay(l, c, d.sin_i, d.cos_i));
 }

@@ -1,0 +1,59 @@
+// One fiber as the path tracer sees it: any model of HairMaterial, in world space.
+#pragma once
+
+#include <pelage/scene.h>
+
+#include <array>
+
+#include "kernel/scalar.h"
+
+namespace pelage {
+
+/// A sampled direction of light. Lobes: 0 R, 1 TT, 2 TRT, 3 what remains (later paths or the diffuse lobe).
+struct FiberSample {
+  Vec3 direction;  ///< toward the light, unit length
+  Vec3 value;      ///< f·cos θ_i of all lobes, per solid angle
+  float pdf;       ///< density of `direction` over solid angle, all lobes together; 0: the light is absorbed
+  int lobe;        ///< the lobe that the direction was drawn from
+};
+
+/// Scattering of a fiber seen from one direction; what does not depend on the light is computed once, by the constructor.
+///
+/// L_o = ∫ L_i · evaluate dω_i over the whole sphere, and ∫ evaluate dω_i = albedo() within the bounds that
+/// kernel/scatter states.
+///
+/// Pure and thread-safe. Everything is finite for every unit direction, along the fiber too.
+class FiberBsdf {
+ public:
+  /// tangent: unit length, root to tip. to_eye: unit length. strand_color: as for make_fiber() (frame/fiber.h).
+  /// h: where the ray meets the fiber, in radii from its axis along cross(to_eye, tangent), −1…1; the surface's normal n
+  /// there has the component h along that axis. Only near-field models look at it.
+  FiberBsdf(const HairMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, float h);
+
+  /// f·cos θ_i, sum of the lobes. to_light: unit length, away from the fiber.
+  Vec3 evaluate(Vec3 to_light) const;
+  /// The same of one lobe, 0…3.
+  Vec3 evaluate_lobe(Vec3 to_light, int lobe) const;
+  /// Density with which sample() draws this direction, per solid angle; integrates to 1 wherever albedo() is not 0.
+  float pdf(Vec3 to_light) const;
+  /// u in [0, 1).
+  FiberSample sample(std::array<float, 4> u) const;
+  /// Integral of evaluate() over the sphere.
+  Vec3 albedo() const;
+
+ private:
+  struct Angles {
+    float sin_i, cos_i, phi;
+  };
+  Angles angles(Vec3 to_light) const;
+  Vec3 evaluate_at(const kernel::ScatterLobes& lobes, Vec3 diffuse, Angles a) const;
+  float pdf_at(Angles a) const;
+
+  HairMaterial::Model model_;
+  Vec3 tangent_, across_, side_;  // right-handed frame: along, in the plane of to_eye, and the rest
+  kernel::ScatterLobes lobes_;
+  Vec3 diffuse_;  // Kajiya-Kay's color
+  kernel::ScatterChoice choice_;
+};
+
+}  // namespace pelage

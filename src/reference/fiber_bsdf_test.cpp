@@ -1,0 +1,191 @@
+// The tests that every scattering model passes before a path tracer may use it (docs/derivations/marschner.md).
+#include "reference/fiber_bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/rng.h"
+#include "frame/fiber.h"
+#include "kit/sphere_kit.h"
+
+namespace pelage {
+namespace {
+
+using Model = HairMaterial::Model;
+constexpr Vec3 kTangent{0, 1, 0};
+
+struct Case {
+  HairMaterial material;
+  float theta_o, h;
+  std::string name;
+};
+
+/// Direction of inclination theta and azimuth phi about kTangent.
+Vec3 direction(double theta, double phi) {
+  return {static_cast<float>(std::cos(theta) * std::cos(phi)), static_cast<float>(std::sin(theta)),
+          static_cast<float>(-std::cos(theta) * std::sin(phi))};
+}
+FiberBsdf bsdf_of(const Case& c) { return FiberBsdf(c.material, {}, kTangent, direction(c.theta_o, 0), c.h); }
+
+const char* name_of(Model m) {
+  switch (m) {
+    case Model::kKajiyaKay: return "Kajiya-Kay";
+    case Model::kMarschner: return "Marschner";
+    case Model::kZhu: break;
+  }
+  return "Zhu";
+}
+
+std::vector<Case> grid(std::vector<float> betas_m, std::vector<float> betas_n, std::vector<float> thetas) {
+  std::vector<Case> all;
+  for (const Model model : {Model::kKajiyaKay, Model::kMarschner, Model::kZhu}) {
+    for (const float beta_m : betas_m) {
+      for (const float beta_n : betas_n) {
+        for (const float tilt : {0.f, 0.07f}) {
+          for (const float eumelanin : {0.f, 0.4f, 8.f}) {
+            for (const float theta : thetas) {
+              Case c{{}, theta, 0.3f, name_of(model)};
+              c.material.model = model;
+              c.material.beta_longitudinal = beta_m, c.material.beta_azimuthal = beta_n;
+              c.material.cuticle_tilt = tilt;
+              c.material.eumelanin = eumelanin, c.material.pheomelanin = 0;
+              c.name += " beta_m " + std::to_string(beta_m) + " beta_n " + std::to_string(beta_n) + " tilt " +
+                        std::to_string(tilt) + " eumelanin " + std::to_string(eumelanin) + " theta_o " + std::to_string(theta);
+              all.push_back(c);
+            }
+          }
+        }
+      }
+    }
+  }
+  return all;
+}
+
+std::array<float, 4> numbers(std::uint32_t i) {
+  const RandomBits r = pcg4d(i, 3, 1, 4);
+  return {uniform_from_bits(r.x), uniform_from_bits(r.y), uniform_from_bits(r.z), uniform_from_bits(r.w)};
+}
+double luminance(Vec3 c) { return kernel::v_luminance(c); }
+
+// White furnace, uniform: the integral of evaluate() is albedo(), of each lobe its part, and of pdf() 1.
+TEST(FiberBsdf, IntegralsOverTheSphere) {
+  double worst_albedo = 0, worst_pdf = 0;
+  for (const Case& c : grid({0.06f, 0.2f}, {0.15f, 0.6f}, {-1.2f, 0.f, 0.5f})) {
+    const FiberBsdf f = bsdf_of(c);
+    const auto over = [](auto&& value) {
+      return kit::sphere_integral([&](double theta, double phi) { return value(direction(theta, phi)); }, 300, 180);
+    };
+    const double albedo = over([&](Vec3 w) { return luminance(f.evaluate(w)); });
+    const double pdf = over([&](Vec3 w) { return f.pdf(w); });
+    EXPECT_NEAR(albedo, luminance(f.albedo()), 1e-3) << c.name;
+    EXPECT_NEAR(pdf, 1, 2e-3) << c.name;
+    EXPECT_LE(f.albedo().x, 1.0001f) << c.name;
+    worst_albedo = std::max(worst_albedo, std::fabs(albedo - luminance(f.albedo())));
+    worst_pdf = std::max(worst_pdf, std::fabs(pdf - 1));
+  }
+  std::printf("integral of f cos: worst error %.1e; of the density: %.1e\n", worst_albedo, worst_pdf);
+}
+
+TEST(FiberBsdf, LobesSumToTheWhole) {
+  for (const Case& c : grid({0.1f}, {0.3f}, {-0.8f, 0.f})) {
+    const FiberBsdf f = bsdf_of(c);
+    for (std::uint32_t i = 0; i < 50; ++i) {
+      const Vec3 w = f.sample(numbers(i)).direction;
+      Vec3 sum{0, 0, 0};
+      for (int lobe = 0; lobe < 4; ++lobe) sum = sum + f.evaluate_lobe(w, lobe);
+      EXPECT_NEAR(sum.x, f.evaluate(w).x, 1e-5f * sum.x) << c.name;
+      EXPECT_NEAR(sum.z, f.evaluate(w).z, 1e-5f * sum.z) << c.name;
+    }
+  }
+}
+
+// White furnace, sampled: the mean of value/pdf is the albedo; no weight is larger than a bound; a sample tells what
+// evaluate() and pdf() tell of its direction.
+TEST(FiberBsdf, SampledFurnaceAndWeights) {
+  double worst = 0;
+  float largest = 0;
+  for (const Case& c : grid({0.002f, 0.05f, 0.13f, 0.5f}, {0.02f, 0.26f, 1.f}, {-1.5f, -0.7f, 0.f, 1.2f})) {
+    const FiberBsdf f = bsdf_of(c);
+    constexpr int kSamples = 4000;
+    double sum = 0, sum2 = 0;
+    for (std::uint32_t i = 0; i < kSamples; ++i) {
+      const FiberSample s = f.sample(numbers(i));
+      ASSERT_GT(s.pdf, 0) << c.name;
+      ASSERT_NEAR(length(s.direction), 1, 1e-5f) << c.name;
+      const float weight = static_cast<float>(luminance(s.value)) / s.pdf;
+      largest = std::max(largest, weight);
+      ASSERT_LE(weight, kernel::kReflectionMaxWeight) << c.name << " sample " << i << " lobe " << s.lobe;
+      sum += weight, sum2 += weight * weight;
+    }
+    const double mean = sum / kSamples, deviation = std::sqrt(std::max(sum2 / kSamples - mean * mean, 0.0) / kSamples);
+    EXPECT_NEAR(mean, luminance(f.albedo()), 4.5 * deviation + 6e-4) << c.name;
+    worst = std::max(worst, std::fabs(mean - luminance(f.albedo())));
+  }
+  std::printf("sampled furnace: worst error %.1e, largest weight %.3f\n", worst, largest);
+}
+
+TEST(FiberBsdf, ASampleIsWhatItsDirectionEvaluatesTo) {
+  for (const Case& c : grid({0.05f, 0.3f}, {0.2f, 0.8f}, {-1.f, 0.2f})) {
+    const FiberBsdf f = bsdf_of(c);
+    for (std::uint32_t i = 0; i < 200; ++i) {
+      const FiberSample s = f.sample(numbers(i));
+      EXPECT_NEAR(s.pdf, f.pdf(s.direction), 2e-3f * s.pdf) << c.name;
+      EXPECT_NEAR(s.value.y, f.evaluate(s.direction).y, 2e-3f * s.value.y) << c.name;
+    }
+  }
+}
+
+// The directions that are drawn against the density that is stated: chi-square, 1 in 10^4 by chance over all cases.
+TEST(FiberBsdf, DirectionsFollowTheirDensity) {
+  const std::vector<Case> cases = grid({0.05f, 0.25f}, {0.15f, 0.7f}, {-1.1f, 0.1f});
+  double least = 1;
+  for (const Case& c : cases) {
+    const FiberBsdf f = bsdf_of(c);
+    kit::SphereHistogram histogram(40, 40);
+    for (std::uint32_t i = 0; i < 40000; ++i) {
+      const Vec3 w = f.sample(numbers(i)).direction;
+      histogram.add(std::asin(std::clamp(w.y, -1.f, 1.f)), std::atan2(-w.z, w.x));
+    }
+    const double p = histogram.p_value([&](double theta, double phi) { return f.pdf(direction(theta, phi)); }, 4);
+    EXPECT_GT(p, 1e-4 / static_cast<double>(cases.size())) << c.name;
+    least = std::min(least, p);
+  }
+  std::printf("chi-square: least p of %zu cases %.2g\n", cases.size(), least);
+}
+
+// The whole domain, its ends more often than the rest.
+TEST(FiberBsdf, FiniteAtTheExtremes) {
+  for (std::uint32_t i = 0; i < 100000; ++i) {
+    Rng rng(19, i);
+    const auto draw = [&](float lo, float hi) {
+      const float which = rng.uniform(), u = rng.uniform();
+      return which < 0.2f ? lo : which < 0.4f ? hi : lo + (hi - lo) * u;
+    };
+    HairMaterial m;
+    m.model = static_cast<Model>(i % 3);
+    m.eumelanin = draw(0, 100), m.pheomelanin = 0, m.eta = draw(1.01f, 3);
+    m.beta_longitudinal = draw(0.0087f, 1.05f), m.beta_azimuthal = draw(0.0087f, 1.57f);
+    m.cuticle_tilt = draw(0, 0.26f), m.specular_gain = draw(0, 100);
+    const float half_pi = 1.57079633f;
+    const FiberBsdf f(m, {}, kTangent, direction(draw(-half_pi, half_pi), draw(-3, 3)), draw(-1, 1));
+    const auto last = [&] { return std::min(draw(0, 1), 0x1.fffffep-1f); };
+    const FiberSample s = f.sample({last(), last(), last(), last()});
+    const Vec3 w = direction(draw(-half_pi, half_pi), draw(-3, 3));
+    ASSERT_TRUE(is_finite(s.direction) && is_finite(s.value) && std::isfinite(s.pdf)) << i;
+    ASSERT_GE(s.pdf, 0) << i;
+    ASSERT_NEAR(length(s.direction), 1, 1e-4f) << i;
+    for (const Vec3 v : {f.evaluate(w), f.albedo(), s.value, f.evaluate_lobe(w, static_cast<int>(i % 4))}) {
+      ASSERT_TRUE(is_finite(v)) << i;
+      ASSERT_GE(std::min({v.x, v.y, v.z}), 0) << i;
+    }
+    ASSERT_TRUE(std::isfinite(f.pdf(w)) && f.pdf(w) >= 0) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pelage
