@@ -72,4 +72,11 @@ CameraView make_camera_view(const Camera& camera, int width, int height) {
   return view;
 }
 
+Ray camera_ray(const CameraView& view, float x, float y) {
+  const float px = (x - view.center_x) / view.focal, py = (y - view.center_y) / view.focal;
+  const Vec3 eye = view.perspective ? Vec3(0, 0, 0) : Vec3(px, py, 0);
+  const Vec3 along = view.perspective ? Vec3(px, py, 1) : Vec3(0, 0, 1);
+  return {transform_point(view.camera_to_world, eye), transform_vector(view.camera_to_world, along), view.near_plane};
+}
+
 }  // namespace pelage

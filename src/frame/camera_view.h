@@ -3,6 +3,7 @@
 
 #include <pelage/scene.h>
 
+#include "core/ray.h"
 #include "frame/frame.h"
 
 namespace pelage {
@@ -20,6 +21,9 @@ float similarity_scale(const Affine& a);
 
 /// Pixels per metre, facing the camera, at camera depth z > 0.
 inline float pixels_per_metre(const CameraView& view, float z) { return view.perspective ? view.focal / z : view.focal; }
+
+/// Ray through a place of the image, pixels, from the near plane on; its parameter is the camera depth.
+Ray camera_ray(const CameraView& view, float x, float y);
 
 /// Where a point in camera space is seen, pixels.
 inline Vec2 project(const CameraView& view, Vec3 c) {

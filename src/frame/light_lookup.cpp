@@ -77,8 +77,7 @@ float mesh_visibility(const ShadowMap& map, Vec3 p, ShadowBias bias) {
   return (row(f.y - 1) * (1 - f.lower) + row(f.y) + row(f.y + 1) + row(f.y + 2) * f.lower) * (1.f / 9);
 }
 
-Illumination illuminate(const PreparedLight& prepared, Vec3 p) {
-  const Light& light = prepared.light;
+Illumination illuminate(const Light& light, Vec3 p) {
   if (light.type == Light::Type::kDirectional) return {-light.direction, INFINITY, light.intensity};
   const Vec3 to_light = light.position - p;
   const float d2 = std::max(dot(to_light, to_light), 1e-12f), distance = std::sqrt(d2);
@@ -86,6 +85,11 @@ Illumination illuminate(const PreparedLight& prepared, Vec3 p) {
   if (light.type == Light::Type::kSpot)
     result.irradiance *= kernel::light_spot_share(-dot(result.to_light, light.direction), std::cos(light.inner_angle),
                                                   std::cos(light.outer_angle));
+  return result;
+}
+
+Illumination illuminate(const PreparedLight& prepared, Vec3 p) {
+  Illumination result = illuminate(prepared.light, p);
   if (prepared.only_in_view) {
     const Vec3 c = transform_point(prepared.opacity.view.world_to_camera, p);
     if (std::max(std::fabs(c.x), std::fabs(c.y)) > c.z) result.irradiance = {0, 0, 0};

@@ -48,6 +48,8 @@ struct Illumination {
   float distance;   ///< metres; +inf for directional lights
   Vec3 irradiance;  ///< W/m² on a surface that faces the light
 };
+Illumination illuminate(const Light& light, Vec3 p);
+/// The same, but dark outside the view of a light that is one face of several.
 Illumination illuminate(const PreparedLight& light, Vec3 p);
 
 /// Irradiance of the environment on a surface with this unit normal, W/m²; never negative.

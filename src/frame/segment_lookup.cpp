@@ -95,4 +95,12 @@ float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, c
   return std::clamp(da / (da - db), 0.f, 1.f);
 }
 
+Vec3 strand_color(const GroomInstance& groom, std::uint32_t strand, std::uint32_t span) {
+  const StrandSet& set = *groom.strands;
+  if (set.colors.empty()) return groom.material.color;
+  if (set.colors.size() == set.strand_count()) return set.colors[strand];
+  const std::uint32_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
+  return set.colors[set.offsets[strand] + span * stride];
+}
+
 }  // namespace pelage

@@ -35,4 +35,7 @@ StrandSurface surface_at(const Scene& scene, const SegmentNumbering& numbering, 
 float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, const CameraView& view, const SegmentRef& s,
                         float x, float y);
 
+/// Color of a strand where a span starts: its own where it has one, else the material's.
+Vec3 strand_color(const GroomInstance& groom, std::uint32_t strand, std::uint32_t span);
+
 }  // namespace pelage

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/environment_map.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
@@ -12,12 +13,6 @@ constexpr float kPi = 3.14159265f;
 /// The map is averaged down to this before anything is derived from it: pieces and harmonics need no more.
 constexpr int kWidth = 128, kHeight = 64;
 
-/// Direction of a place of the map, u to the right, v down, both 0…1: the middle column looks along −Z.
-Vec3 map_direction(const Environment& environment, float u, float v) {
-  const float azimuth = (u - 0.5f) * 2 * kPi - environment.rotation, polar = v * kPi;
-  return {std::sin(azimuth) * std::sin(polar), std::cos(polar), -std::cos(azimuth) * std::sin(polar)};
-}
-
 struct Texel {
   Vec3 direction;
   Vec3 power;       ///< radiance · solid angle
@@ -26,11 +21,6 @@ struct Texel {
 
 float luminance(Vec3 c) { return kernel::v_luminance(c); }
 
-Vec3 map_value(const Image& map, int x, int y) {
-  const float* c = map.at(x, y);
-  return map.channel_count() >= 3 ? Vec3(c[0], c[1], c[2]) : Vec3(c[0], c[0], c[0]);
-}
-
 /// Mean of the map over columns [x0, x1) and rows [y0, y1), at least one texel.
 Vec3 map_mean(const Image& map, int x0, int x1, int y0, int y1) {
   x1 = std::max(x1, x0 + 1), y1 = std::max(y1, y0 + 1);
@@ -38,10 +28,6 @@ Vec3 map_mean(const Image& map, int x0, int x1, int y0, int y1) {
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) sum += map_value(map, x, y);
   return sum / static_cast<float>((x1 - x0) * (y1 - y0));
-}
-
-bool has_map(const Environment& environment) {
-  return environment.map && environment.map->width > 0 && environment.map->height > 0;
 }
 
 std::vector<Texel> reduced(const Environment& environment) {
@@ -111,23 +97,6 @@ EnvironmentPiece summarize(const std::vector<Texel>& texels, const Region& r) {
 }
 
 }  // namespace
-
-Vec3 environment_radiance(const Environment& environment, Vec3 d) {
-  if (!has_map(environment)) return environment.radiance;
-  const Image& map = *environment.map;
-  const float azimuth = std::atan2(d.x, -d.z) + environment.rotation;
-  const float u = azimuth / (2 * kPi) + 0.5f, v = std::acos(std::clamp(d.y, -1.f, 1.f)) / kPi;
-  const float x = (u - std::floor(u)) * static_cast<float>(map.width) - 0.5f;
-  const float y = std::clamp(v * static_cast<float>(map.height) - 0.5f, 0.f, static_cast<float>(map.height - 1));
-  const float x0 = std::floor(x), y0 = std::floor(y);
-  const auto value = [&](float px, float py) {
-    const int ix = (static_cast<int>(px) + map.width) % map.width;
-    return map_value(map, ix, std::min(static_cast<int>(py), map.height - 1));
-  };
-  const Vec3 top = lerp(value(x0, y0), value(x0 + 1, y0), x - x0);
-  const Vec3 bottom = lerp(value(x0, y0 + 1), value(x0 + 1, y0 + 1), x - x0);
-  return environment.radiance * lerp(top, bottom, y - y0);
-}
 
 std::vector<EnvironmentPiece> cut_environment(const Environment& environment, int levels) {
   if (!(luminance(environment.radiance) > 0)) return {};

@@ -9,9 +9,6 @@
 
 namespace pelage {
 
-/// Radiance from direction `d` (unit length, world space, pointing away from the scene), W/(m²·sr).
-Vec3 environment_radiance(const Environment& environment, Vec3 d);
-
 /// A region of the sky, as a light.
 struct EnvironmentPiece {
   Vec3 from;        ///< unit direction to the region's center of power

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "frame/light_lookup.h"
+#include "frame/environment_map.h"
 #include "light/environment.h"
 #include "light/light_view.h"
 #include "light/shadow_map.h"

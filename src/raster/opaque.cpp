@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "frame/camera_view.h"
 #include "frame/light_lookup.h"
 #include "kernel/scalar.h"
 
@@ -21,14 +22,6 @@ constexpr float kSharedDepth = 0.02f;
 constexpr float kRayOffset = 2e-4f;
 /// Metres that a mesh must be in front of a surface in an environment piece's coarse shadow map, in texels.
 constexpr ShadowBias kEnvironmentBias{0, 2.5f};
-
-/// Ray through a place of the image; its parameter is the camera depth.
-Ray camera_ray(const CameraView& view, float x, float y) {
-  const float px = (x - view.center_x) / view.focal, py = (y - view.center_y) / view.focal;
-  const Vec3 eye = view.perspective ? Vec3(0, 0, 0) : Vec3(px, py, 0);
-  const Vec3 along = view.perspective ? Vec3(px, py, 1) : Vec3(0, 0, 1);
-  return {transform_point(view.camera_to_world, eye), transform_vector(view.camera_to_world, along), view.near_plane};
-}
 
 /// A hit with what shading needs; normals face the eye.
 struct Shading {

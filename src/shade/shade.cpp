@@ -32,22 +32,13 @@ Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
   return normalize(transform_vector(view.camera_to_world, {0, 0, -1}));
 }
 
-/// Color of a strand at a point: its own where it has one, else the material's.
-Vec3 strand_color(const GroomInstance& groom, const SegmentRef& s) {
-  const StrandSet& set = *groom.strands;
-  if (set.colors.empty()) return groom.material.color;
-  if (set.colors.size() == set.strand_count()) return set.colors[s.strand];
-  const std::uint32_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
-  return set.colors[set.offsets[s.strand] + s.span * stride];
-}
-
 void gather_lane(const Gather& g, const VisibleSample& sample, const SegmentRef& segment, ShadeBatch& batch, std::size_t i) {
   const GroomInstance& groom = g.scene.grooms[segment.groom];
   const Vec2 at = screen_place(g, sample);
   const float t = locate_on_segment(g.scene, g.numbering, g.view, segment, at.x, at.y);
   const StrandSurface s = surface_at(g.scene, g.numbering, segment, t);
   const Vec3 to_eye = direction_to_eye(g.view, s.position);
-  const Vec3 absorption = fiber_absorption(groom.material, strand_color(groom, segment));
+  const Vec3 absorption = fiber_absorption(groom.material, strand_color(groom, segment.strand, segment.span));
   batch.px[i] = s.position.x, batch.py[i] = s.position.y, batch.pz[i] = s.position.z;
   batch.tx[i] = s.tangent.x, batch.ty[i] = s.tangent.y, batch.tz[i] = s.tangent.z;
   batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
