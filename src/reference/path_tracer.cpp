@@ -1,0 +1,258 @@
+#include "reference/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "frame/camera_view.h"
+#include "frame/segment_lookup.h"
+#include "kernel/scalar.h"
+#include "reference/light_sampler.h"
+#include "reference/ray_scene.h"
+#include "reference/sequence.h"
+#include "reference/vertex.h"
+
+namespace pelage {
+namespace {
+
+/// Paths that carry little are ended by chance from this scattering event on.
+constexpr int kFirstRoulette = 3;
+
+float largest(Vec3 c) { return std::max({c.x, c.y, c.z}); }
+
+/// Share of an estimate with density `p` where the other technique has `q`: Veach 1997, section 9.2.4
+/// (references.bib: Veach1997Robust).
+float power_heuristic(float p, float q) {
+  const float r = q / p;
+  return 1 / (1 + r * r);
+}
+
+using Shares = std::array<Vec3, PathSample::kLobes>;
+
+/// Share of each lobe in what `bsdf` scatters from `to_light`.
+Shares lobe_shares(const Bsdf& bsdf, Vec3 to_light) {
+  Shares shares;
+  Vec3 sum;
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    shares[k] = evaluate_lobe(bsdf, to_light, static_cast<int>(k));
+    sum += shares[k];
+  }
+  const Vec3 inverse(sum.x > 0 ? 1 / sum.x : 0, sum.y > 0 ? 1 / sum.y : 0, sum.z > 0 ? 1 / sum.z : 0);
+  for (Vec3& s : shares) s = s * inverse;
+  return shares;
+}
+
+/// Adds up what a path finds.
+struct Tally {
+  PathSample& result;
+  bool split;
+  Shares shares{};  ///< of the first hit's lobes in what comes along the path after it
+
+  void add(Vec3 radiance, int scatterings) {
+    result.radiance += radiance;
+    if (!split) return;
+    result.bounces[std::min(static_cast<std::size_t>(scatterings), PathSample::kBounces - 1)] += radiance;
+    for (std::size_t k = 0; k < shares.size(); ++k) result.lobes[k] += radiance * shares[k];
+  }
+};
+
+struct MeshMaterial {
+  float specular, roughness;
+};
+
+std::vector<MeshMaterial> materials(const std::vector<MeshInstance>& meshes) {
+  std::vector<MeshMaterial> all;
+  for (const MeshInstance& m : meshes) all.push_back({m.specular, m.roughness});
+  return all;
+}
+
+}  // namespace
+
+struct PathTracer::State {
+  PathSettings settings;
+  CameraView view, previous_view;
+  std::vector<GroomInstance> grooms;
+  std::vector<MeshMaterial> mesh_materials;
+  bool environment_visible;
+  RayScene rays;
+  LightSampler lights;
+  bool seek_environment;  ///< by rays toward it
+
+  State(const Scene& scene, const PathSettings& s);
+
+  Vertex vertex(const SceneHit& hit, const Ray& ray) const;
+  Vertex first_vertex(const SceneHit& hit, const Ray& ray, Vec2 at, PathSample& result) const;
+  bool visible(const Vertex& vertex, const LightRay& light) const;
+  void gather(const Vertex& vertex, const LightRay& light, Vec3 throughput, int depth, Tally& tally) const;
+  void gather_lights(const Vertex& vertex, std::array<float, 4> u, Vec3 throughput, int depth, Tally& tally) const;
+  float found_share(const FiberSample& scattered, int depth) const;
+  void transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const;
+  PathSample sample(int x, int y, std::uint32_t index) const;
+};
+
+PathTracer::State::State(const Scene& scene, const PathSettings& s)
+    : settings(s), view(make_camera_view(scene.camera, scene.settings.width, scene.settings.height)),
+      previous_view(s.previous_camera ? make_camera_view(*s.previous_camera, scene.settings.width, scene.settings.height)
+                                      : view),
+      grooms(scene.grooms), mesh_materials(materials(scene.meshes)), environment_visible(scene.environment.visible),
+      rays(scene, s.curve_shape), lights(scene) {
+  PELAGE_CHECK(settings.max_bounces >= 1);
+  if (settings.integrator == Integrator::kSingle) settings.max_bounces = 1;
+  // An environment that is the same everywhere is best found by the rays that scatter: their density is the integrand's.
+  seek_environment = !lights.environment().black() && settings.technique != Technique::kBsdf &&
+                     !(settings.technique == Technique::kMis && lights.environment().uniform());
+}
+
+/// What the ray met, ready to scatter toward the ray's origin.
+Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
+  const Vec3 to_eye = normalize(-ray.direction);
+  if (hit.kind == SceneHit::Kind::kStrand) {
+    const StrandPlace place = rays.strand_place(hit);
+    const GroomInstance& groom = grooms[hit.object];
+    const bool own_color = groom.material.color_source == HairMaterial::ColorSource::kStrand;
+    const Vec3 color = own_color ? strand_color(groom, place.strand, place.span) : groom.material.color;
+    const Vec3 off_axis = ray.origin + ray.direction * hit.distance - place.axis,
+               side = normalize(cross(to_eye, place.tangent));
+    const float h = place.radius > 0 ? std::clamp(dot(off_axis, side) / place.radius, -1.f, 1.f) : 0.f;
+    return {place.axis, place.tangent, {}, place.radius, FiberBsdf(groom.material, color, place.tangent, to_eye, h)};
+  }
+  Surface s = rays.surface(hit);
+  if (dot(s.geometric_normal, to_eye) < 0) s.normal = -s.normal, s.geometric_normal = -s.geometric_normal;
+  const float scale = std::max({std::fabs(s.position.x), std::fabs(s.position.y), std::fabs(s.position.z), hit.distance});
+  const MeshMaterial& m = mesh_materials[hit.object];
+  return {s.position,
+          {},
+          s.geometric_normal,
+          Vertex::kSurfaceOffset * scale,
+          SurfaceBsdf(s.normal, to_eye, s.color, m.specular, m.roughness)};
+}
+
+/// The same for the camera's ray, which also tells what it met. `at`: place of the sample in the image, pixels.
+Vertex PathTracer::State::first_vertex(const SceneHit& hit, const Ray& ray, Vec2 at, PathSample& result) const {
+  Vertex v = vertex(hit, ray);
+  const Vec3 to_eye = normalize(-ray.direction), met = ray.origin + ray.direction * hit.distance;
+  result.alpha = 1;
+  result.depth = hit.distance;
+  result.position = v.position;
+  result.albedo = albedo(v.bsdf);
+  result.normal = v.geometric_normal;
+  if (v.hair()) {
+    const StrandPlace place = rays.strand_place(hit);
+    result.hair = true;
+    result.tangent = place.tangent;
+    result.normal = normalize(to_eye - place.tangent * dot(to_eye, place.tangent));
+    result.groom = hit.object, result.strand = place.strand, result.u = place.u, result.width = 2 * place.radius;
+  }
+  const Vec3 before = transform_point(previous_view.world_to_camera, met);
+  if (settings.previous_camera && before.z > 0) result.motion = project(previous_view, before) - at;
+  return v;
+}
+
+bool PathTracer::State::visible(const Vertex& vertex, const LightRay& light) const {
+  if (!settings.shadows || !light.casts_shadow) return true;
+  const Ray ray = vertex.ray(light.to_light, light.distance);
+  return !(ray.near < ray.far) || !rays.occluded(ray);
+}
+
+/// Light that comes straight from `light` and is scattered toward the eye.
+void PathTracer::State::gather(const Vertex& vertex, const LightRay& light, Vec3 throughput, int depth, Tally& tally) const {
+  if (!(largest(light.arriving) > 0)) return;
+  Vec3 radiance = throughput * light.arriving * evaluate(vertex.bsdf, light.to_light);
+  if (light.pdf > 0 && settings.technique == Technique::kMis)
+    radiance *= power_heuristic(light.pdf, pdf(vertex.bsdf, light.to_light));
+  if (!(largest(radiance) > 0) || !visible(vertex, light)) return;
+  if (tally.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, light.to_light);
+  tally.add(radiance, depth);
+}
+
+/// Where the eye's ray ends every light is looked for, later one of them.
+void PathTracer::State::gather_lights(const Vertex& vertex, std::array<float, 4> u, Vec3 throughput, int depth,
+                                      Tally& tally) const {
+  if (depth == 0) {
+    for (std::size_t i = 0; i < lights.lights().size(); ++i)
+      gather(vertex, lights.toward(i, vertex.position), throughput, depth, tally);
+    if (seek_environment) gather(vertex, lights.toward_environment({u[1], u[2]}, 1), throughput, depth, tally);
+    return;
+  }
+  const LightSampler::Choice choice = lights.choose(u[0], seek_environment);
+  if (!(choice.chance > 0)) return;
+  if (choice.index == lights.lights().size())
+    return gather(vertex, lights.toward_environment({u[1], u[2]}, choice.chance), throughput, depth, tally);
+  gather(vertex, lights.toward(choice.index, vertex.position), throughput / choice.chance, depth, tally);
+}
+
+/// Share of the environment's light that counts where a scattered ray finds it.
+float PathTracer::State::found_share(const FiberSample& scattered, int depth) const {
+  if (!seek_environment) return 1;
+  if (settings.technique == Technique::kNee) return 0;
+  const float chance = depth == 0 ? 1.f : lights.environment_chance();
+  return power_heuristic(scattered.pdf, lights.environment().pdf(scattered.direction) * chance);
+}
+
+/// All light that leaves the first vertex toward the eye.
+void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const {
+  const EnvironmentSampler& environment = lights.environment();
+  Vec3 throughput(1, 1, 1);
+  for (int depth = 0; depth < max_bounces; ++depth) {
+    const std::array<float, 4> u = random.next(), v = random.next();
+    gather_lights(vertex, v, throughput, depth, tally);
+    const FiberSample scattered = pelage::sample(vertex.bsdf, u);
+    if (!(scattered.pdf > 0)) return;
+    throughput = throughput * scattered.value / scattered.pdf;
+    if (tally.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
+    if (depth >= kFirstRoulette) {
+      const float survival = std::min(largest(throughput), 1.f);
+      if (!(v[3] < survival)) return;
+      throughput = throughput / survival;
+    }
+    const float share = environment.black() ? 0.f : found_share(scattered, depth);
+    const bool last = depth + 1 == max_bounces;
+    if (!(largest(throughput) > 0) || (last && !(share > 0))) return;
+    const Ray ray = vertex.ray(scattered.direction);
+    SceneHit hit;
+    bool open = false;
+    if (!last) {
+      hit = rays.intersect(ray);
+      open = hit.kind == SceneHit::Kind::kNone;
+    } else {
+      open = !settings.shadows || !rays.occluded(ray);
+    }
+    if (share > 0 && (open || !settings.shadows))
+      tally.add(throughput * environment.radiance(scattered.direction) * share, depth);
+    if (open || last) return;
+    vertex = this->vertex(hit, ray);
+  }
+}
+
+PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {
+  PELAGE_CHECK(x >= 0 && x < view.width && y >= 0 && y < view.height);
+  Sequence random(settings.seed,
+                  static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view.width) + static_cast<std::uint32_t>(x),
+                  index);
+  const std::array<float, 4> u = random.next();
+  const Vec2 in_pixel = settings.positions.empty() ? Vec2(u[0], u[1]) : settings.positions[index % settings.positions.size()];
+  const Vec2 at = Vec2(static_cast<float>(x), static_cast<float>(y)) + in_pixel;
+  const Ray ray = camera_ray(view, at.x, at.y);
+  const SceneHit hit = rays.intersect(ray);
+  PathSample result;
+  Tally tally{result, settings.split};
+  if (hit.kind == SceneHit::Kind::kNone) {
+    if (!environment_visible) return result;
+    result.alpha = 1;
+    result.radiance = lights.environment().radiance(normalize(ray.direction));
+    return result;
+  }
+  const Vertex vertex = first_vertex(hit, ray, at, result);
+  transport(vertex, settings.max_bounces, random, tally);
+  return result;
+}
+
+PathTracer::PathTracer(const Scene& scene, const PathSettings& settings) : state_(std::make_unique<State>(scene, settings)) {}
+PathTracer::~PathTracer() = default;
+PathTracer::PathTracer(PathTracer&&) noexcept = default;
+
+PathSample PathTracer::sample(int x, int y, std::uint32_t index) const { return state_->sample(x, y, index); }
+std::size_t PathTracer::curve_count() const { return state_->rays.span_total(); }
+std::size_t PathTracer::bytes() const { return state_->rays.bytes() + state_->lights.environment().bytes(); }
+
+}  // namespace pelage

@@ -1,0 +1,88 @@
+// Strands and meshes in one acceleration structure, and what is found where a ray meets them.
+#pragma once
+
+#include <embree3/rtcore.h>
+#include <pelage/scene.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/ray.h"
+#include "core/world_mesh.h"
+#include "reference/path_tracer.h"
+
+namespace pelage {
+
+/// Something that a ray met first.
+struct SceneHit {
+  enum class Kind { kNone, kStrand, kMesh };
+  Kind kind = Kind::kNone;
+  float distance = INFINITY;    ///< in units of the ray's direction
+  std::uint32_t object = 0;     ///< index into Scene::grooms or Scene::meshes
+  std::uint32_t primitive = 0;  ///< span of the groom, or triangle
+  float u = 0, v = 0;           ///< along the span, 0…1; or barycentric
+};
+
+/// A place on a strand's axis, world space.
+struct StrandPlace {
+  std::uint32_t strand = 0, span = 0;
+  Vec3 axis;         ///< metres
+  Vec3 tangent;      ///< unit length, root to tip
+  float radius = 0;  ///< metres
+  float u = 0;       ///< 0 at the root … 1 at the tip
+};
+
+/// Strands between two places.
+class StrandVisitor {
+ public:
+  virtual ~StrandVisitor() = default;
+  virtual void cross(const SceneHit& hit) = 0;
+};
+
+/// World-space copies of all strands and meshes of a scene. Queries are const and thread-safe.
+///
+/// Every span of a strand is one curve of the strand's basis with its phantom ends, so the curve is the one that
+/// frame/segment_lookup.h defines. Its width runs through the same basis, through the widths of the control points.
+/// Flat curves nearer than their width to a ray's origin are not met (Embree's guard against self-intersection).
+class RayScene {
+ public:
+  RayScene(const Scene& scene, CurveShape shape);
+  ~RayScene();
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  SceneHit intersect(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+  /// Tells every strand on the ray, in any order, a strand that is met n times n times. False where a mesh stands in the way.
+  bool cross_strands(const Ray& ray, StrandVisitor& visitor) const;
+
+  StrandPlace strand_place(const SceneHit& hit) const;
+  Surface surface(const SceneHit& hit) const;
+
+  std::size_t span_total() const;
+  std::size_t bytes() const;
+  RTCScene embree() const { return scene_; }
+
+ private:
+  /// Spans of one groom. Control points of a strand stand together, phantoms included.
+  struct Curves {
+    CurveBasis basis = CurveBasis::kLinear;
+    std::vector<Vec4> points;                ///< world position and radius
+    std::vector<std::uint32_t> first_point;  ///< [spans] of the span's control points
+    std::vector<std::uint32_t> strand;       ///< [spans]
+    std::vector<std::uint32_t> first_span;   ///< [strands + 1]
+    std::vector<std::uint8_t> flags;         ///< [spans] linear: which neighbors there are
+  };
+  static Curves make_curves(const GroomInstance& groom);
+  void attach_curves(const Curves& curves, CurveShape shape);
+
+  std::vector<WorldMesh> meshes_;
+  std::vector<Curves> grooms_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  std::size_t embree_bytes_ = 0;
+};
+
+}  // namespace pelage
