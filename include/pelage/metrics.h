@@ -54,7 +54,7 @@ PixelMask mask_from_image(const Picture& picture);
 struct PixelSet {
   int width = 0;  ///< of the picture
   PixelRect rect;
-  std::span<const std::uint8_t> mask;  ///< empty: all of `rect`
+  std::span<const std::uint8_t> mask = {};  ///< empty: all of `rect`
 
   bool contains(int x, int y) const {
     return mask.empty() || mask[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
@@ -62,18 +62,19 @@ struct PixelSet {
 };
 
 struct CompareOptions {
-  std::vector<std::string> metrics;  ///< keys of registered metrics; empty: all that the pair allows
+  std::vector<std::string> metrics = {};  ///< keys of registered metrics; empty: all that the pair allows
   /// Set: both pictures are compared as a display shows them, scene-linear ones after this curve and sRGB encoding, as
   /// `render` writes PNG. Not set: two scene-linear pictures are compared as they are; a mixed pair as with kAces.
-  std::optional<ToneMap> tone_map;
-  PixelMask mask;                 ///< values are taken over these pixels; hair_mask(reference) as the papers do
-  std::vector<Region> regions;    ///< values are also taken over each of these, within the mask
-  std::vector<std::string> maps;  ///< keys of metrics whose errors per pixel are wanted
-  float pixels_per_degree = 67;   ///< FLIP's distance to the screen: 0.7 m from a 0.7 m wide screen of 3840 pixels
+  std::optional<ToneMap> tone_map = {};
+  PixelMask mask = {};                 ///< values are taken over these pixels; hair_mask(reference) as the papers do
+  std::vector<Region> regions = {};    ///< values are also taken over each of these, within the mask
+  std::vector<std::string> maps = {};  ///< keys of metrics whose errors per pixel are wanted
+  /// FLIP's distance to the screen: 0.7 m from a 0.7 m wide one of 3840 pixels, 0.7 · 3840 / 0.7 · π / 180 (Andersson 2020).
+  float pixels_per_degree = 67.0206433f;
   /// HDR-FLIP's first and last exposure in stops, and their number; not set: found from the reference.
-  std::optional<float> start_exposure, stop_exposure;
+  std::optional<float> start_exposure = {}, stop_exposure = {};
   int exposures = 0;  ///< 0: found
-  Progress progress;
+  Progress progress = {};
 };
 
 struct MetricValue {
@@ -96,6 +97,7 @@ struct Comparison {
   int width = 0, height = 0;
   std::size_t pixels = 0;             ///< that were counted
   std::vector<MetricValue> values;    ///< in the order of the registry
+  std::vector<MetricValue> details;   ///< what the metrics tell besides, e.g. HDR-FLIP's exposures
   std::vector<RegionValues> regions;  ///< in the order of the options
   std::vector<ErrorMap> maps;         ///< in the order of the options
   std::vector<std::string> warnings;  ///< one sentence each, for people
@@ -135,26 +137,29 @@ float color_scale(const ErrorMap& map);
 /// What `evaluate` of a metric hands back: an error per pixel, and how it becomes a value over a set of pixels.
 struct MetricResult {
   Image map;  ///< one channel `error`; empty where the metric has no meaning per pixel
-  std::function<std::optional<double>(const PixelSet&)> value;  ///< not set: the mean of `map` over the set
+  std::function<std::optional<double>(const PixelSet&)> value = {};  ///< not set: the mean of `map` over the set
+  std::vector<MetricValue> details = {};                             ///< what else is worth telling, e.g. exposures it chose
 };
-/// The pair as a metric sees it: same size, finite, R, G, B in `domain`, over black.
+/// The pair as a metric sees it: same size, finite, over black.
 struct MetricInput {
-  const Image& test;
+  const Image& test;  ///< R, G, B in `domain`
   const Image& reference;
   Encoding domain = Encoding::kLinear;
-  const std::vector<float>* test_coverage = nullptr;  ///< one per pixel, where the picture has it
-  const std::vector<float>* reference_coverage = nullptr;
+  const std::vector<float>& test_coverage;  ///< one per pixel; empty where the picture has none
+  const std::vector<float>& reference_coverage;
   const CompareOptions& options;
 };
 struct Metric {
-  std::string key;          ///< "flip"; a word for JSON and the command line
-  std::string description;  ///< one line for people
+  std::string key;                      ///< "flip"; a word for JSON and the command line
+  std::string description;              ///< one line for people
+  std::optional<Encoding> domain = {};  ///< in which it wants the pair; not set: the pair's own
   bool higher_is_better = false;
   bool has_map = true;
-  float map_scale = 0;  ///< the error at which its map's colors end; 0: the map decides
-  /// Why the metric cannot be had for a pair, "" where it can. Not set: it always can.
-  std::function<std::string(const MetricInput&)> unavailable;
-  std::function<MetricResult(const MetricInput&)> evaluate;
+  std::string no_value = "no value";  ///< what to say where pixels were counted and gave none
+  float map_scale = 0;                ///< the error at which its map's colors end; 0: the map decides
+  /// Says why the metric cannot be had for a pair, "" where it can. Not set: it always can.
+  std::function<std::string(const MetricInput&)> unavailable = {};
+  std::function<MetricResult(const MetricInput&)> evaluate = {};
 };
 /// Every metric by registration; the built-in ones first.
 const std::vector<Metric>& registered_metrics();

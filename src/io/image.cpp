@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "io/atomic_file.h"
 #include "io/byte_source.h"
+#include "io/srgb.h"
 #include "io/file_kind.h"
 #include "io/image_png.h"
 
@@ -22,15 +22,13 @@ constexpr int kMaxSide = 1 << 16;
 // A file that states a larger picture must itself be a fair part of that: memory is not asked for on the word of a few bytes.
 constexpr std::uint64_t kAlwaysRead = 1 << 30, kMostPacked = 2048;
 
-float srgb_to_linear(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
-
 bool is_alpha(const std::string& channel) { return channel == "A" || channel == "a" || channel.ends_with(".A"); }
 
 void linearize_colors(Image& image) {
   const std::size_t n = image.channel_count();
   for (std::size_t c = 0; c < n; ++c) {
     if (is_alpha(image.channels[c])) continue;
-    for (std::size_t i = c; i < image.pixels.size(); i += n) image.pixels[i] = srgb_to_linear(image.pixels[i]);
+    for (std::size_t i = c; i < image.pixels.size(); i += n) image.pixels[i] = io::srgb_to_linear(image.pixels[i]);
   }
 }
 
