@@ -9,7 +9,7 @@
 #include "frame/curve_basis.h"
 #include "raster/band_walk.h"
 #include "raster/keys.h"
-#include "raster/sample_positions.h"
+#include "frame/sample_positions.h"
 
 namespace pelage::bench {
 

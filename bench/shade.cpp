@@ -18,7 +18,7 @@
 #include "grooms.h"
 #include "light/light.h"
 #include "raster/raster.h"
-#include "raster/sample_positions.h"
+#include "frame/sample_positions.h"
 #include "shade/evaluate.h"
 
 namespace pelage::bench {

@@ -19,7 +19,7 @@ TEXT = CODE + (".py", ".sh", ".cmake", ".txt", ".md", ".json", ".bib", ".in")
 # Layers: who may include whom. core ← kernel ← stages ← frame ← apps. The headers of frame/ declare what flows between
 # stages and how it is read, so every stage sees them; in return they see no stage (only frame's .cpp files do).
 
-STAGES = {"io", "groom", "assemble", "raster", "light", "shade", "composite"}
+STAGES = {"io", "groom", "assemble", "raster", "light", "shade", "filter", "composite"}
 LAYERS = {
     "core": {"core"},
     "kernel": {"core", "kernel"},

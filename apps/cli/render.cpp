@@ -78,8 +78,12 @@ void render_verb(const RenderOptions& options) {
 }
 
 void add_picture_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--spp", o.samples, "Samples per pixel")->check(CLI::IsMember({1, 2, 4, 8, 16}));
-  verb.add_option("--view", o.view, "beauty, strand-id, u, tangent, depth, coverage, overdraw or albedo")->type_name("NAME");
+  verb.add_option("--method", o.method, "Anti-aliasing: msaa (all samples in one frame, shared shading) or ssaa (each shaded)")
+      ->type_name("NAME");
+  verb.add_option("--spp", o.samples, "Samples per pixel; msaa: 1, 2, 4, 8 or 16; ssaa: any number")
+      ->check(CLI::Range(1, 4096));
+  verb.add_option("--view", o.view, "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo or motion")
+      ->type_name("NAME");
   verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic")->type_name("NAME");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')
@@ -110,6 +114,7 @@ void add_render(CLI::App& app) {
       "Examples:\n"
       "  pelage render hair.tfx --mesh head.obj -o hair.png\n"
       "  pelage render hair.tfx -o hair.exr --size 1920x1080 --spp 16 --hair blond --stats\n"
+      "  pelage render hair.tfx -o reference.exr --method ssaa --spp 64\n"
       "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage");
   verb->callback([o] {
     if (o->schema) return fmt::print("{}", io::scene_schema());

@@ -20,7 +20,7 @@ struct RenderOptions {
   std::string input;
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
-  std::optional<std::string> size, view, alpha, tone_map, model, hair, background, environment;
+  std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment;
   std::optional<int> samples, subdivisions, opacity_map_size;
   std::optional<float> exposure, fov, turn, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;

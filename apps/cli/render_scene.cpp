@@ -10,6 +10,7 @@
 #include <map>
 
 #include "core/nearest.h"
+#include "frame/sample_positions.h"
 #include "render.h"
 #include "verbs.h"
 
@@ -93,7 +94,10 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
     if (s.width < 1 || s.height < 1 || s.width > 16384 || s.height > 16384)
       throw UsageError("--size", *o.size, "out of range", "from 1x1 to 16384x16384");
   }
+  if (o.method) s.method = by_name<Method>("--method", *o.method, {{"msaa", Method::kMsaa}, {"ssaa", Method::kSsaa}});
   if (o.samples) s.samples = *o.samples;
+  if (s.method == Method::kMsaa && !is_sample_count(s.samples))
+    throw UsageError("--spp", std::to_string(s.samples), "no pattern of msaa", "use 1, 2, 4, 8 or 16, or --method ssaa");
   if (o.alpha)
     s.alpha =
         by_name<AlphaSource>("--alpha", *o.alpha, {{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}});
@@ -106,7 +110,8 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
                             {"depth", View::kDepth},
                             {"coverage", View::kCoverage},
                             {"overdraw", View::kOverdraw},
-                            {"albedo", View::kAlbedo}});
+                            {"albedo", View::kAlbedo},
+                            {"motion", View::kMotion}});
   if (o.tone_map)
     s.tone_map = by_name<ToneMap>("--tone-map", *o.tone_map, {{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
   if (o.exposure) s.exposure = *o.exposure;

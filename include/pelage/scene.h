@@ -6,6 +6,7 @@
 #include <pelage/triangle_mesh.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,7 +78,7 @@ struct MeshInstance {
 };
 
 /// What the picture shows.
-enum class View { kBeauty, kStrandId, kU, kTangent, kDepth, kCoverage, kOverdraw, kAlbedo };
+enum class View { kBeauty, kStrandId, kU, kTangent, kDepth, kCoverage, kOverdraw, kAlbedo, kMotion };
 
 /// Where a pixel's opacity comes from.
 enum class AlphaSource {
@@ -87,9 +88,21 @@ enum class AlphaSource {
 
 enum class ToneMap { kAces, kNone };
 
+/// How a picture is anti-aliased.
+enum class Method {
+  kMsaa,  ///< `samples` places a pixel, all in one frame; those that see the same segment share one shade
+  kSsaa,  ///< `samples` frames of one sample each, every one shaded where it is; the reference
+  kTaa,   ///< frames of one sample each in turn, every one blended into those before; see `frames`
+  kFxaa,  ///< one sample in the middle of the pixel, then FXAA 3.11
+  kSmaa,  ///< one sample in the middle of the pixel, then SMAA 1x
+  kOidn,  ///< one sample in the middle of the pixel, then Open Image Denoise, in builds that have it
+};
+
 struct RenderSettings {
   int width = 1024, height = 1024;  ///< pixels, 1…16384
-  int samples = 8;                  ///< per pixel: 1, 2, 4, 8 or 16
+  Method method = Method::kMsaa;
+  int samples = 8;  ///< per pixel; kMsaa: 1, 2, 4, 8 or 16; kSsaa: 1…4096; no other method reads it
+  int frames = 16;  ///< kTaa: frames that a still camera takes for one picture, 1…4096
   AlphaSource alpha = AlphaSource::kSamples;
   View view = View::kBeauty;
   float exposure = 0;  ///< stops
@@ -104,6 +117,7 @@ struct RenderSettings {
 
 struct Scene {
   Camera camera;
+  std::optional<Camera> previous_camera;  ///< where it was a frame ago, for motion vectors; none: it stood still
   std::vector<Light> lights;
   Environment environment;
   std::vector<GroomInstance> grooms;

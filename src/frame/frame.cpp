@@ -1,9 +1,4 @@
 // One frame: the list of stages, in the order of the diagram (HACKING.md).
-#include <pelage/error.h>
-#include <pelage/render.h>
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -11,40 +6,16 @@
 #include "assemble/assemble.h"
 #include "composite/composite.h"
 #include "composite/debug_view.h"
-#include "core/mesh_tracer.h"
+#include "core/parallel.h"
 #include "frame/camera_view.h"
-#include "frame/frame.h"
-#include "frame/stages.h"
-#include "light/light.h"
+#include "frame/one_frame.h"
 #include "raster/opaque.h"
+#include "raster/keys.h"
 #include "raster/raster.h"
-#include "raster/sample_positions.h"
 #include "shade/shade.h"
 
 namespace pelage {
 namespace {
-
-void check_settings(const RenderSettings& s) {
-  const auto require = [](bool sound, const char* name, auto value, const char* range) {
-    if (!sound) throw Error("settings", name, fmt::format("{} is out of range", value), range);
-  };
-  require(s.width >= 1 && s.width <= 16384, "width", s.width, "1…16384");
-  require(s.height >= 1 && s.height <= 16384, "height", s.height, "1…16384");
-  require(is_sample_count(s.samples), "samples", s.samples, "1, 2, 4, 8 or 16");
-  require(s.subdivisions >= 0 && s.subdivisions <= 64, "subdivisions", s.subdivisions, "0…64");
-  require(s.opacity_map_size >= 64 && s.opacity_map_size <= 4096, "opacity_map_size", s.opacity_map_size, "64…4096");
-  require(s.exposure >= -100 && s.exposure <= 100, "exposure", s.exposure, "-100…100");
-}
-
-StageWork groom_work(const Scene& scene) {
-  StageWork work;
-  for (const GroomInstance& groom : scene.grooms) {
-    if (!groom.strands) throw Error("scene", groom.name, "a groom without strands", "set GroomInstance::strands");
-    work.items += groom.strands->point_count();
-    work.bytes += resident_bytes(*groom.strands);
-  }
-  return work;
-}
 
 template <class... T>
 std::uint64_t bytes_of(const Buffer<T>&... buffers) {
@@ -56,6 +27,8 @@ std::uint64_t bytes_of(const GBuffer& g) {
                   g.opaque_depth);
 }
 
+constexpr Vec2 kPixelCenter{0.5f, 0.5f};
+
 // Rows of the picture that go through raster, shade and resolve together.
 struct Band {
   int first_row, rows;
@@ -65,8 +38,8 @@ struct Band {
 // the settings alone, never from the machine, because a band's pixels may differ in the last bit from a whole picture's.
 constexpr std::size_t kSamplesPerBand = std::size_t{1} << 23;
 
-std::vector<Band> bands_of(const RenderSettings& s) {
-  const std::size_t per_row = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.samples);
+std::vector<Band> bands_of(const RenderSettings& s, std::size_t samples) {
+  const std::size_t per_row = static_cast<std::size_t>(s.width) * samples;
   const int most = static_cast<int>(std::max<std::size_t>(1, kSamplesPerBand / per_row));
   const int count = (s.height + most - 1) / most, rows = (s.height + count - 1) / count;
   std::vector<Band> bands;
@@ -79,15 +52,6 @@ CameraView view_of_band(CameraView view, const Band& band) {
   view.height = band.rows;
   return view;
 }
-
-// What all bands share.
-struct Frame {
-  const Scene& scene;
-  CameraView view;
-  SegmentNumbering numbering;
-  MeshTracer meshes;
-  LightRig rig;
-};
 
 // The strand that touches each pixel none of whose samples a strand covers: colors for AlphaSource::kAnalytic.
 GBuffer edge_layer(const GBuffer& gbuffer) {
@@ -104,107 +68,107 @@ GBuffer edge_layer(const GBuffer& gbuffer) {
   return edges;
 }
 
-void render_band(const Frame& frame, const Band& band, Stages& stages, Image& linear) {
-  const RenderSettings& settings = frame.scene.settings;
-  const CameraView view = view_of_band(frame.view, band);
-  const auto positions = sample_positions(settings.samples);
-  const std::span<const Vec2> samples(positions.data(), static_cast<std::size_t>(settings.samples));
+// Nearest thing that the first sample of each pixel sees, strand or mesh.
+void keep_nearest(const GBuffer& gbuffer, const OpaqueLayer& opaque, std::size_t first_pixel, Buffer<float>& nearest) {
+  const Buffer<PixelKey>& keys = gbuffer.sample_keys.empty() ? gbuffer.center : gbuffer.sample_keys;
+  const auto samples = static_cast<std::size_t>(gbuffer.samples);
+  parallel_for(keys.size() / samples, 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const PixelKey key = keys[p * samples];
+      const float mesh = opaque.depth.empty() ? INFINITY : opaque.depth[p * samples];
+      nearest[first_pixel + p] = key == kEmptyPixel ? mesh : key_depth(key);
+    }
+  });
+}
+
+void render_band(const FrameInputs& inputs, const Band& band, std::span<const Vec2> samples, Stages& stages, Image& linear,
+                 Buffer<float>* nearest) {
+  const RenderSettings& settings = inputs.scene.settings;
+  const CameraView view = view_of_band(inputs.view, band);
   const bool analytic = settings.alpha == AlphaSource::kAnalytic;
   const std::uint64_t pixels = static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
 
   OpaqueLayer opaque;
-  if (!frame.meshes.empty())
+  if (!inputs.meshes.empty())
     stages.run("opaque", "samples", [&](const Progress&) {
-      opaque = trace_opaque(frame.scene, view, samples, frame.meshes, frame.rig);
+      opaque = trace_opaque(inputs.scene, view, samples, inputs.meshes, inputs.rig);
       return StageWork{pixels * samples.size(), bytes_of(opaque.depth, opaque.color)};
     });
 
   GBuffer gbuffer;
   stages.run("raster", "segments", [&](const Progress& progress) {
-    const RasterLayers layers{.center = false, .conservative = analytic, .samples = settings.samples, .analytic = analytic};
+    RasterLayers layers{
+        .center = false, .conservative = analytic, .samples = static_cast<int>(samples.size()), .analytic = analytic};
+    if (samples.size() == 1 && samples[0] == kPixelCenter && !analytic) layers.center = true, layers.samples = 0;
     std::swap(gbuffer.opaque_depth, opaque.depth);  // lent, so that it stands in memory once
-    const std::uint64_t segments = raster_strands(frame.scene, view, frame.numbering, layers, gbuffer, progress);
+    const std::uint64_t segments = raster_strands(inputs.scene, view, inputs.numbering, layers, gbuffer, progress);
     std::swap(gbuffer.opaque_depth, opaque.depth);
     return StageWork{segments, bytes_of(gbuffer)};
   });
 
   Radiance radiance, edges;
   stages.run("shade", "evaluations", [&](const Progress&) {
-    radiance = shade(frame.scene, view, frame.numbering, gbuffer, frame.rig, samples);
+    radiance = shade(inputs.scene, view, inputs.numbering, gbuffer, inputs.rig, samples);
     if (analytic)
-      edges = shade(frame.scene, view, frame.numbering, edge_layer(gbuffer), frame.rig, std::array{Vec2(0.5f, 0.5f)});
+      edges = shade(inputs.scene, view, inputs.numbering, edge_layer(gbuffer), inputs.rig, std::array{kPixelCenter});
     return StageWork{radiance.color.size() + edges.color.size(),
                      bytes_of(radiance.index, edges.index) + bytes_of(radiance.color, edges.color)};
   });
 
+  const std::size_t first_pixel = static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(view.width);
+  if (nearest) keep_nearest(gbuffer, opaque, first_pixel, *nearest);
   gbuffer.sample_keys.release();  // every strand that they show has its color
   stages.run("composite", "pixels", [&](const Progress&) {
     if (linear.pixels.empty()) linear = Image(settings.width, settings.height, {"R", "G", "B", "A"});
-    resolve({gbuffer, radiance, edges, opaque, make_backdrop(frame.scene, view)}, settings, band.first_row, linear);
+    resolve({gbuffer, radiance, edges, opaque, make_backdrop(inputs.scene, view)}, settings, band.first_row, linear);
     return StageWork{pixels, linear.pixels.size() * sizeof(float)};
   });
 }
 
-Image render_beauty(const Frame& frame, Stages& stages) {
-  const RenderSettings& settings = frame.scene.settings;
+}  // namespace
+
+Image render_frame(const FrameInputs& inputs, std::span<const Vec2> positions, Stages& stages, Buffer<float>* nearest) {
+  const RenderSettings& settings = inputs.scene.settings;
+  if (nearest) nearest->resize(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
   Image linear;  // made by the first band that is ready for it
-  const std::vector<Band> bands = bands_of(settings);
+  const std::vector<Band> bands = bands_of(settings, positions.size());
   for (std::size_t i = 0; i < bands.size(); ++i) {
     stages.set_band(static_cast<int>(i), static_cast<int>(bands.size()));
-    render_band(frame, bands[i], stages, linear);
+    render_band(inputs, bands[i], positions, stages, linear, nearest);
   }
   stages.set_band(0, 1);
   return linear;
 }
 
-// One sample in the middle of each pixel, no light.
-DebugView render_debug_view(const Frame& frame, Stages& stages) {
-  const View what = frame.scene.settings.view;
-  const std::array middle{Vec2(0.5f, 0.5f)};
+Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages) {
   GBuffer gbuffer;
-  OpaqueLayer opaque = trace_opaque(frame.scene, frame.view, middle, frame.meshes, frame.rig);
+  OpaqueLayer opaque = trace_opaque(inputs.scene, inputs.view, std::array{kPixelCenter}, inputs.meshes, inputs.rig);
+  stages.run("raster", "segments", [&](const Progress& progress) {
+    std::swap(gbuffer.opaque_depth, opaque.depth);
+    const std::uint64_t segments = raster_strands(inputs.scene, inputs.view, inputs.numbering, {}, gbuffer, progress);
+    std::swap(gbuffer.opaque_depth, opaque.depth);
+    return StageWork{segments, bytes_of(gbuffer)};
+  });
+  Buffer<float> nearest(gbuffer.center.size());
+  keep_nearest(gbuffer, opaque, 0, nearest);
+  return nearest;
+}
+
+DebugView render_debug_view(const FrameInputs& inputs, View what, Stages& stages) {
+  GBuffer gbuffer;
+  OpaqueLayer opaque = trace_opaque(inputs.scene, inputs.view, std::array{kPixelCenter}, inputs.meshes, inputs.rig);
   stages.run("raster", "segments", [&](const Progress& progress) {
     const RasterLayers layers{.analytic = what == View::kCoverage, .overdraw = what == View::kOverdraw};
     std::swap(gbuffer.opaque_depth, opaque.depth);
-    const std::uint64_t segments = raster_strands(frame.scene, frame.view, frame.numbering, layers, gbuffer, progress);
+    const std::uint64_t segments = raster_strands(inputs.scene, inputs.view, inputs.numbering, layers, gbuffer, progress);
     return StageWork{segments, bytes_of(gbuffer)};
   });
   DebugView view;
   stages.run("composite", "pixels", [&](const Progress&) {
-    view = make_debug_view(frame.scene, frame.view, frame.numbering, gbuffer, what);
+    view = make_debug_view(inputs.scene, inputs.view, inputs.numbering, gbuffer, what);
     return StageWork{gbuffer.center.size(), (view.data.pixels.size() + view.display.pixels.size()) * sizeof(float)};
   });
   return view;
-}
-
-}  // namespace
-
-RenderResult render(const Scene& scene, const Progress& progress) {
-  const RenderSettings& settings = scene.settings;
-  check_settings(settings);
-  Stages stages(progress);
-  stages.note("groom", "points", groom_work(scene));
-  const CameraView view = make_camera_view(scene.camera, settings.width, settings.height);
-  Frame frame{scene, view, number_segments(scene, view), MeshTracer(scene.meshes), {}};
-
-  RenderResult result;
-  if (settings.view == View::kBeauty) {
-    stages.run("light", "maps", [&](const Progress&) {
-      frame.rig = prepare_lights(scene, frame.meshes);
-      return StageWork{frame.rig.lights.size(), resident_bytes(frame.rig)};
-    });
-    result.linear = render_beauty(frame, stages);
-    stages.run("display", "pixels", [&](const Progress&) {
-      result.display = make_display(result.linear, settings.tone_map);
-      return StageWork{result.display.pixels.size() / 4, result.display.pixels.size() * sizeof(float)};
-    });
-  } else {
-    DebugView debug = render_debug_view(frame, stages);
-    result.linear = std::move(debug.data);
-    result.display = std::move(debug.display);
-  }
-  result.stats = stages.take();
-  return result;
 }
 
 }  // namespace pelage

@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Views, EveryView,
                                           testing::Values(AlphaSource::kSamples, AlphaSource::kAnalytic)));
 INSTANTIATE_TEST_SUITE_P(DebugViews, EveryView,
                          testing::Combine(testing::Values(View::kStrandId, View::kU, View::kTangent, View::kDepth,
-                                                          View::kCoverage, View::kOverdraw, View::kAlbedo),
+                                                          View::kCoverage, View::kOverdraw, View::kAlbedo, View::kMotion),
                                           testing::Values(AlphaSource::kSamples)));
 
 // A band of a tenth of the picture: its alpha is a tenth.

@@ -7,7 +7,8 @@
 namespace pelage {
 
 bool Stages::report(const char* name, double share) const {
-  return !progress_ || progress_(name, (band_ + std::clamp(share, 0.0, 1.0)) / band_count_);
+  const double of_pass = (band_ + std::clamp(share, 0.0, 1.0)) / band_count_;
+  return !progress_ || progress_(name, (pass_ + of_pass) / pass_count_);
 }
 
 void Stages::tell(const char* name, double share) const {

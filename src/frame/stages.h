@@ -17,14 +17,16 @@ struct StageWork {
   std::uint64_t bytes = 0;  ///< that its results hold
 };
 
-/// Runs stages one after another and keeps their statistics. A stage that runs once for every band of the picture has
-/// one row: times and items add up, bytes are the largest of a band.
+/// Runs stages one after another and keeps their statistics. A stage that runs once for every band of a picture, or frame
+/// of several that make one, has one row: times and items add up, bytes are the largest of a run.
 class Stages {
  public:
   explicit Stages(Progress progress) : progress_(std::move(progress)) {}
 
   /// The stages from now on are those of band `band` of `count`: their progress is told as a share of all bands.
   void set_band(int band, int count) { band_ = band, band_count_ = count; }
+  /// … and the bands are those of frame `pass` of `count` that make one picture.
+  void set_pass(int pass, int count) { pass_ = pass, pass_count_ = count; }
 
   /// Calls work(progress) → StageWork as stage `name`. Throws Error when the listener cancels.
   template <class Work>
@@ -48,7 +50,7 @@ class Stages {
 
   Progress progress_;
   std::vector<StageStat> stats_;
-  int band_ = 0, band_count_ = 1;
+  int band_ = 0, band_count_ = 1, pass_ = 0, pass_count_ = 1;
 };
 
 }  // namespace pelage

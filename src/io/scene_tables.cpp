@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "frame/sample_positions.h"
+
 namespace pelage::io {
 namespace {
 
@@ -189,18 +191,26 @@ const Fields<RenderSettings>& settings_fields() {
   static const Names<AlphaSource> alphas{{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}};
   static const Names<View> views{{"beauty", View::kBeauty},     {"strand-id", View::kStrandId}, {"u", View::kU},
                                  {"tangent", View::kTangent},   {"depth", View::kDepth},        {"coverage", View::kCoverage},
-                                 {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo}};
+                                 {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo},      {"motion", View::kMotion}};
+  static const Names<Method> methods{{"msaa", Method::kMsaa}, {"ssaa", Method::kSsaa}};
   static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};
   static const Fields<S> table{
       integer_field("width", "Pixels", &S::width, 1, 16384),
       integer_field("height", "Pixels", &S::height, 1, 16384),
+      // Before the samples, whose range it decides.
+      choice_field("method", "How the picture is anti-aliased", &S::method, methods),
       {"samples",
-       {{"description", "Per pixel"}, {"enum", {1, 2, 4, 8, 16}}},
+       {{"description", "Per pixel: 1, 2, 4, 8 or 16 for msaa, any number for ssaa"},
+        {"type", "integer"},
+        {"minimum", 1},
+        {"maximum", 4096}},
        [](const JsonValue& v, S& out) {
-         const long long n = v.integer(1, 16);
-         if (n & (n - 1)) v.fail(std::to_string(n) + " samples per pixel", "1, 2, 4, 8 or 16");
+         const long long n = v.integer(1, 4096);
+         if (out.method == Method::kMsaa && !is_sample_count(static_cast<int>(n)))
+           v.fail(std::to_string(n) + " samples per pixel", "1, 2, 4, 8 or 16; others with method ssaa");
          out.samples = static_cast<int>(n);
        }},
+      integer_field("frames", "Frames that taa takes of a still camera for one picture", &S::frames, 1, 4096),
       choice_field("alpha", "Opacity: share of covered samples, or exact area", &S::alpha, alphas),
       choice_field("view", "What the picture shows", &S::view, views),
       number_field("exposure", "Stops", &S::exposure, -100, 100),

@@ -67,7 +67,7 @@ TEST_F(SceneFile, EveryValueArrives) {
     "grooms": [{"name": "fur", "grow": {"style": "coat", "surface": "tile", "strands": 5, "points": 4, "seed": 9, "length": 0.01},
                 "material": {"model": "zhu", "color": [0.4, 0.5, 0.6], "eumelanin": 2, "eta": 1.4, "beta_longitudinal": 9, "cuticle_tilt": 1},
                 "width_scale": 2}],
-    "settings": {"width": 320, "height": 200, "samples": 4, "alpha": "analytic", "view": "u", "exposure": -1.5, "tone_map": "none",
+    "settings": {"width": 320, "height": 200, "samples": 50, "method": "ssaa", "alpha": "analytic", "view": "u", "exposure": -1.5, "tone_map": "none",
                  "background": [1, 2, 3], "transparent_background": true, "subdivisions": 3, "shadows": false,
                  "dual_scattering": false, "opacity_map_size": 256}
   })");
@@ -99,7 +99,8 @@ TEST_F(SceneFile, EveryValueArrives) {
   EXPECT_EQ(groom.width_scale, 2);
   const RenderSettings& s = scene.settings;
   EXPECT_EQ(s.width, 320);
-  EXPECT_EQ(s.samples, 4);
+  EXPECT_EQ(s.method, Method::kSsaa);
+  EXPECT_EQ(s.samples, 50);
   EXPECT_EQ(s.alpha, AlphaSource::kAnalytic);
   EXPECT_EQ(s.view, View::kU);
   EXPECT_EQ(s.exposure, -1.5f);
@@ -126,7 +127,8 @@ TEST_F(SceneFile, WrongValuesAreTold) {
       {R"({"settings": {"width": 99999999999999999999}})", "line 1: /settings/width: number where a whole number is expected"},
       {R"({"settings": {"width": 18446744073709551615}})",
        "line 1: /settings/width: 18446744073709551615 is out of range (from 1 to 16384)"},
-      {R"({"settings": {"samples": 3}})", "line 1: /settings/samples: 3 samples per pixel (1, 2, 4, 8 or 16)"},
+      {R"({"settings": {"samples": 3}})",
+       "line 1: /settings/samples: 3 samples per pixel (1, 2, 4, 8 or 16; others with method ssaa)"},
       {R"({"settings": {"view": "dept"}})", "line 1: /settings/view: unknown value `dept` (did you mean `depth`?)"},
       {R"({"settings": {"shadows": 1}})", "line 1: /settings/shadows: number where true or false is expected"},
       {R"({"settings": {"background": [1, 2]}})", "line 1: /settings/background: 2 elements where 3 numbers are expected"},

@@ -8,7 +8,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "raster/sample_positions.h"
+#include "frame/sample_positions.h"
 
 namespace pelage {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "frame/camera_view.h"
 #include "kernel/scalar.h"
-#include "raster/sample_positions.h"
+#include "frame/sample_positions.h"
 
 namespace pelage {
 namespace {

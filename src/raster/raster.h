@@ -16,7 +16,7 @@ namespace pelage {
 struct RasterLayers {
   bool center = true;         ///< band covers the pixel's center
   bool conservative = false;  ///< band touches the pixel anywhere
-  int samples = 0;            ///< 0 for none; else 1, 2, 4, 8 or 16 positions (raster/sample_positions.h)
+  int samples = 0;            ///< 0 for none; else 1, 2, 4, 8 or 16 positions (frame/sample_positions.h)
   bool analytic = false;      ///< area and tangent: raster/analytic.h
   bool overdraw = false;      ///< count the fragments at the pixel's center, hidden ones too
 };

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "raster/keys.h"
-#include "raster/sample_positions.h"
+#include "frame/sample_positions.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/samples_wide.cpp"

@@ -15,7 +15,7 @@
 #include "frame/segment_lookup.h"
 #include "kernel/scalar.h"
 #include "light/light.h"
-#include "raster/sample_positions.h"
+#include "frame/sample_positions.h"
 #include "shade/evaluate.h"
 #include "shade/visible.h"
 

@@ -43,6 +43,8 @@ TEST_F(Cli, UsageErrorsNameTheNearest) {
       {"render x -o a.png --hair blonde", "did you mean `blond`?"},
       {"render", "INPUT"},
       {"render x", "--output"},
+      {"render x -o a.png --method mssa", "did you mean `msaa`?"},
+      {"render x -o a.png --method ssaa --spp 0", "--spp"},
       {"render x -o a.png --spp 3", "--spp"},
       {"render x -o a.png --threads -1", "--threads"},
       {"render x -o a.png --isa MMX", "--isa"},

@@ -1,0 +1,140 @@
+// The anti-aliasing methods against each other on small scenes.
+#include <gtest/gtest.h>
+#include <pelage/error.h>
+#include <pelage/render.h>
+#include <pelage/runtime.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "frame/sample_positions.h"
+#include "raster/test_scene.h"
+
+namespace pelage {
+namespace {
+
+Scene hairy_scene(int width = 96, int height = 64) {
+  Scene scene;
+  scene.settings.width = width;
+  scene.settings.height = height;
+  scene.settings.opacity_map_size = 128;
+  scene.grooms.emplace_back().strands = std::make_shared<StrandSet>(test::helices(300, 16));
+  add_default_camera(scene);
+  add_default_lights(scene);
+  return scene;
+}
+
+// A tile of 4 cm behind the middle of the hair.
+void add_tile(Scene& scene) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->positions = {{-0.04f, -0.04f, 0}, {0.04f, -0.04f, 0}, {0.04f, 0.04f, 0}, {-0.04f, 0.04f, 0}};
+  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.meshes.emplace_back().mesh = mesh;
+}
+
+Image linear_of(Scene scene, Method method, int samples) {
+  scene.settings.method = method;
+  scene.settings.samples = samples;
+  return render(scene).linear;
+}
+
+double rms(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const double d = static_cast<double>(a.pixels[i] - b.pixels[i]);
+    sum += d * d;
+  }
+  return std::sqrt(sum / static_cast<double>(a.pixels.size()));
+}
+
+// Jittered frames see what the sample layers see: the same share of samples is covered, but for rounding at edges.
+TEST(Ssaa, CoversTheSamplesThatMsaaCovers) {
+  Scene scene = hairy_scene();
+  add_tile(scene);
+  scene.settings.transparent_background = true;
+  for (const int samples : {1, 2, 8, 16}) {
+    const Image together = linear_of(scene, Method::kMsaa, samples), apart = linear_of(scene, Method::kSsaa, samples);
+    int different = 0;
+    for (std::size_t i = 3; i < together.pixels.size(); i += 4)
+      different += std::fabs(together.pixels[i] - apart.pixels[i]) > 1e-6f;
+    EXPECT_LE(different, 96 * 64 / 500) << samples << " samples";
+  }
+}
+
+TEST(Ssaa, OneSampleIsOneSample) {
+  const Scene scene = hairy_scene();
+  EXPECT_EQ(linear_of(scene, Method::kSsaa, 1).pixels, linear_of(scene, Method::kMsaa, 1).pixels);
+}
+
+// A band narrower than a pixel: with many samples its alpha is its area.
+TEST(Ssaa, ConvergesToTheArea) {
+  Scene scene;
+  scene.settings.width = scene.settings.height = 40;
+  scene.settings.transparent_background = true;
+  scene.camera.projection = Camera::Projection::kOrthographic;
+  scene.camera.height = 1;
+  scene.grooms.emplace_back().strands =
+      std::make_shared<StrandSet>(test::strand({{-0.31f, -0.8f, 0}, {0.117f, 0.8f, 0}}, 0.013f));
+  scene.settings.shadows = false;
+  const auto mean_alpha = [&](int samples) {
+    const Image image = linear_of(scene, Method::kSsaa, samples);
+    double sum = 0;
+    for (std::size_t i = 3; i < image.pixels.size(); i += 4) sum += static_cast<double>(image.pixels[i]);
+    return sum / 1600;
+  };
+  const double area = 0.013 / std::cos(std::atan(0.427 / 1.6));
+  EXPECT_NEAR(mean_alpha(64), area, 0.01 * area);
+  EXPECT_NEAR(mean_alpha(100), area, 0.01 * area);
+}
+
+TEST(Ssaa, ComesCloserWithMoreSamples) {
+  const Scene scene = hairy_scene();
+  const Image reference = linear_of(scene, Method::kSsaa, 256);
+  double before = rms(linear_of(scene, Method::kSsaa, 1), reference);
+  for (const int samples : {4, 16, 64}) {
+    const double now = rms(linear_of(scene, Method::kSsaa, samples), reference);
+    EXPECT_LT(now, 0.6 * before) << samples;
+    before = now;
+  }
+}
+
+TEST(Methods, SettingsThatDoNotGoTogetherAreErrors) {
+  Scene scene = hairy_scene(8, 8);
+  scene.settings.samples = 3;
+  EXPECT_THROW(render(scene), Error);
+  scene.settings.method = Method::kSsaa;
+  EXPECT_NO_THROW(render(scene));
+  scene.settings.alpha = AlphaSource::kAnalytic;
+  EXPECT_THROW(render(scene), Error);
+  scene.settings.alpha = AlphaSource::kSamples;
+  scene.settings.samples = 5000;
+  EXPECT_THROW(render(scene), Error);
+}
+
+class EveryMethod : public testing::TestWithParam<Method> {};
+
+TEST_P(EveryMethod, HasTheSameBitsForAnyThreadsAndInstructionSet) {
+  Scene scene = hairy_scene(101, 67);
+  add_tile(scene);
+  scene.settings.method = GetParam();
+  scene.settings.samples = 4;
+  set_thread_count(1);
+  const RenderResult one = render(scene);
+  for (const int threads : {2, 5}) {
+    set_thread_count(threads);
+    const RenderResult many = render(scene);
+    EXPECT_EQ(many.linear.pixels, one.linear.pixels) << threads << " threads";
+    EXPECT_EQ(many.display.pixels, one.display.pixels) << threads << " threads";
+  }
+  for (const std::string& isa : available_isas()) {
+    set_isa(isa);
+    EXPECT_EQ(render(scene).linear.pixels, one.linear.pixels) << isa;
+  }
+  set_isa("");
+  set_thread_count(0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::Values(Method::kMsaa, Method::kSsaa));
+
+}  // namespace
+}  // namespace pelage

@@ -1,0 +1,38 @@
+// One frame of a scene: the list of stages from strands to linear color, and the debug views.
+#pragma once
+
+#include <pelage/image.h>
+#include <pelage/scene.h>
+
+#include <span>
+
+#include "core/buffer.h"
+#include "core/mesh_tracer.h"
+#include "frame/frame.h"
+#include "frame/stages.h"
+
+namespace pelage {
+
+struct DebugView;
+
+/// What a frame is made from. Meshes and lights are the same for every camera; view and numbering belong together.
+struct FrameInputs {
+  const Scene& scene;
+  const MeshTracer& meshes;
+  const LightRig& rig;
+  CameraView view;
+  SegmentNumbering numbering;
+};
+
+/// The scene with samples at `positions` of every pixel, 1, 2, 4, 8 or 16 of them: R, G, B, A, linear, premultiplied.
+/// `nearest`, where given, becomes [h·w]: camera z of what the pixel's first sample sees, metres, +inf for nothing.
+Image render_frame(const FrameInputs& inputs, std::span<const Vec2> positions, Stages& stages,
+                   Buffer<float>* nearest = nullptr);
+
+/// [h·w] camera z of what the middle of each pixel sees, strand or mesh, metres; +inf for nothing. No light.
+Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages);
+
+/// `what`, any View but kBeauty and kMotion: one sample in the middle of each pixel, no light.
+DebugView render_debug_view(const FrameInputs& inputs, View what, Stages& stages);
+
+}  // namespace pelage
