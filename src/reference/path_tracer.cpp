@@ -7,6 +7,7 @@
 #include "frame/camera_view.h"
 #include "frame/segment_lookup.h"
 #include "kernel/scalar.h"
+#include "reference/dual_light.h"
 #include "reference/light_sampler.h"
 #include "reference/ray_scene.h"
 #include "reference/sequence.h"
@@ -77,6 +78,7 @@ struct PathTracer::State {
   RayScene rays;
   LightSampler lights;
   bool seek_environment;  ///< by rays toward it
+  std::optional<DualLight> dual;
 
   State(const Scene& scene, const PathSettings& s);
 
@@ -87,6 +89,8 @@ struct PathTracer::State {
   void gather_lights(const Vertex& vertex, std::array<float, 4> u, Vec3 throughput, int depth, Tally& tally) const;
   float found_share(const FiberSample& scattered, int depth) const;
   void transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const;
+  void gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random, Tally& tally) const;
+  Vec3 color_of(std::uint32_t groom, const StrandPlace& place) const;
   PathSample sample(int x, int y, std::uint32_t index) const;
 };
 
@@ -95,12 +99,20 @@ PathTracer::State::State(const Scene& scene, const PathSettings& s)
       previous_view(s.previous_camera ? make_camera_view(*s.previous_camera, scene.settings.width, scene.settings.height)
                                       : view),
       grooms(scene.grooms), mesh_materials(materials(scene.meshes)), environment_visible(scene.environment.visible),
-      rays(scene, s.curve_shape), lights(scene) {
+      rays(scene, s.integrator == Integrator::kDual ? CurveShape::kFlat : s.curve_shape), lights(scene) {
   PELAGE_CHECK(settings.max_bounces >= 1);
   if (settings.integrator == Integrator::kSingle) settings.max_bounces = 1;
+  if (settings.integrator == Integrator::kDual) dual.emplace(grooms);
   // An environment that is the same everywhere is best found by the rays that scatter: their density is the integrand's.
   seek_environment = !lights.environment().black() && settings.technique != Technique::kBsdf &&
                      !(settings.technique == Technique::kMis && lights.environment().uniform());
+}
+
+/// Of a strand where it was met; its material looks at it only where colors are the strands' own.
+Vec3 PathTracer::State::color_of(std::uint32_t groom, const StrandPlace& place) const {
+  const GroomInstance& g = grooms[groom];
+  const bool own = g.material.color_source == HairMaterial::ColorSource::kStrand;
+  return own ? strand_color(g, place.strand, place.span) : g.material.color;
 }
 
 /// What the ray met, ready to scatter toward the ray's origin.
@@ -109,8 +121,7 @@ Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
   if (hit.kind == SceneHit::Kind::kStrand) {
     const StrandPlace place = rays.strand_place(hit);
     const GroomInstance& groom = grooms[hit.object];
-    const bool own_color = groom.material.color_source == HairMaterial::ColorSource::kStrand;
-    const Vec3 color = own_color ? strand_color(groom, place.strand, place.span) : groom.material.color;
+    const Vec3 color = color_of(hit.object, place);
     const Vec3 off_axis = ray.origin + ray.direction * hit.distance - place.axis,
                side = normalize(cross(to_eye, place.tangent));
     const float h = place.radius > 0 ? std::clamp(dot(off_axis, side) / place.radius, -1.f, 1.f) : 0.f;
@@ -224,6 +235,31 @@ void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& rand
   }
 }
 
+/// Light that leaves a strand toward the eye by dual scattering: one ray to every light counts the strands on its way.
+void PathTracer::State::gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random,
+                                    Tally& tally) const {
+  const DualPlace place =
+      dual->place(hit.object, color_of(hit.object, rays.strand_place(hit)), vertex.tangent, normalize(-ray.direction));
+  const auto gather_one = [&](const LightRay& light) {
+    if (!(largest(light.arriving) > 0)) return;
+    CrossedStrands crossed;
+    const Ray way = vertex.ray(light.to_light, light.distance);
+    if (settings.shadows && light.casts_shadow && way.near < way.far) {
+      const auto cross = [&](const SceneHit& on_way) {
+        const StrandPlace p = rays.strand_place(on_way);
+        dual->cross(crossed, on_way.object, color_of(on_way.object, p), p.tangent, light.to_light);
+      };
+      if (!rays.cross_strands(way, cross)) return;
+    }
+    const Vec3 radiance = light.arriving * DualLight::evaluate(place, light.to_light, crossed);
+    if (tally.split) tally.shares = lobe_shares(vertex.bsdf, light.to_light);
+    tally.add(radiance, crossed.count);
+  };
+  for (std::size_t i = 0; i < lights.lights().size(); ++i) gather_one(lights.toward(i, vertex.position));
+  const std::array<float, 4> u = random.next();
+  if (!lights.environment().black()) gather_one(lights.toward_environment({u[0], u[1]}, 1));
+}
+
 PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {
   PELAGE_CHECK(x >= 0 && x < view.width && y >= 0 && y < view.height);
   Sequence random(settings.seed,
@@ -243,7 +279,8 @@ PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {
     return result;
   }
   const Vertex vertex = first_vertex(hit, ray, at, result);
-  transport(vertex, settings.max_bounces, random, tally);
+  if (dual && vertex.hair()) gather_dual(vertex, hit, ray, random, tally);
+  else transport(vertex, dual ? 1 : settings.max_bounces, random, tally);
   return result;
 }
 

@@ -97,22 +97,25 @@ RayScene::Curves RayScene::make_curves(const GroomInstance& groom) {
   return c;
 }
 
-void RayScene::attach_curves(const Curves& c, CurveShape shape) {
-  RTCGeometry geometry = rtcNewGeometry(device_, geometry_type(c.basis, shape));
+void RayScene::attach_curves(const Curves& c) {
+  RTCGeometry geometry = rtcNewGeometry(device_, geometry_type(c.basis, shape_));
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, c.points.data(), 0, sizeof(Vec4),
                              c.points.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, c.first_point.data(), 0,
                              sizeof(std::uint32_t), c.first_point.size());
   if (!c.flags.empty())
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, c.flags.data(), 0, 1, c.flags.size());
-  if (c.basis != CurveBasis::kLinear && shape == CurveShape::kFlat) rtcSetGeometryTessellationRate(geometry, kTessellation);
+  if (c.basis != CurveBasis::kLinear && shape_ == CurveShape::kFlat) rtcSetGeometryTessellationRate(geometry, kTessellation);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
 }
 
-RayScene::RayScene(const Scene& scene, CurveShape shape) : meshes_(world_meshes(scene.meshes)) {
-  for (const GroomInstance& groom : scene.grooms) grooms_.push_back(make_curves(groom));
+RayScene::RayScene(const Scene& scene, CurveShape shape) : shape_(shape), meshes_(world_meshes(scene.meshes)) {
+  for (const GroomInstance& groom : scene.grooms) {
+    grooms_.push_back(make_curves(groom));
+    has_caps_.push_back(groom.strands->basis == CurveBasis::kLinear);
+  }
   device_ = rtcNewDevice(nullptr);
   if (!device_) throw Error("ray tracing", "Embree", "no device could be made", "check the Embree installation");
   std::atomic<std::int64_t> memory{0};
@@ -120,7 +123,7 @@ RayScene::RayScene(const Scene& scene, CurveShape shape) : meshes_(world_meshes(
   scene_ = rtcNewScene(device_);
   rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   for (const WorldMesh& mesh : meshes_) attach(device_, scene_, mesh);
-  for (const Curves& curves : grooms_) attach_curves(curves, shape);
+  for (const Curves& curves : grooms_) attach_curves(curves);
   arena().execute([&] { rtcCommitScene(scene_); });
   rtcSetDeviceMemoryMonitorFunction(device_, nullptr, nullptr);
   embree_bytes_ = static_cast<std::size_t>(std::max<std::int64_t>(memory, 0));
@@ -169,30 +172,36 @@ namespace {
 /// What the filter of cross_strands() is told; Embree hands the context back, so it comes first.
 struct CrossingContext {
   RTCIntersectContext embree;
-  StrandVisitor* visitor;
+  const StrandVisitor* visitor;
   std::uint32_t meshes;
+  const std::uint8_t* has_caps;
 };
 
-/// Lets strands pass and tells them; meshes stop the ray.
+/// Lets strands pass and tells them; meshes stop the ray. One ray a call, because the query is one.
 void pass_strands(const RTCFilterFunctionNArguments* args) {
   const auto* context = reinterpret_cast<const CrossingContext*>(args->context);
-  PELAGE_CHECK_EQ(args->N, 1u);
   if (args->valid[0] == 0) return;
-  const std::uint32_t geometry = RTCHitN_geomID(args->hit, 1, 0);
+  RTCRayN* ray = args->ray;
+  RTCHitN* hit = args->hit;
+  const std::uint32_t geometry = RTCHitN_geomID(hit, 1, 0);
   if (geometry < context->meshes) return;
-  context->visitor->cross({SceneHit::Kind::kStrand, RTCRayN_tfar(args->ray, 1, 0), geometry - context->meshes,
-                           RTCHitN_primID(args->hit, 1, 0), RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0)});
   args->valid[0] = 0;
+  const float u = RTCHitN_u(hit, 1, 0);
+  if (context->has_caps[geometry - context->meshes] && (u == 0 || u == 1)) return;
+  (*context->visitor)({SceneHit::Kind::kStrand, RTCRayN_tfar(ray, 1, 0), geometry - context->meshes, RTCHitN_primID(hit, 1, 0),
+                       u, RTCHitN_v(hit, 1, 0)});
 }
 
 }  // namespace
 
-bool RayScene::cross_strands(const Ray& ray, StrandVisitor& visitor) const {
+bool RayScene::cross_strands(const Ray& ray, const StrandVisitor& visitor) const {
+  PELAGE_CHECK(shape_ == CurveShape::kFlat);
   CrossingContext context;
   rtcInitIntersectContext(&context.embree);
   context.embree.filter = pass_strands;
   context.visitor = &visitor;
   context.meshes = static_cast<std::uint32_t>(meshes_.size());
+  context.has_caps = has_caps_.data();
   RTCRay query = embree_ray(ray);
   rtcOccluded1(scene_, &context.embree, &query);
   return query.tfar >= 0;

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <vector>
 
 #include "core/ray.h"
@@ -34,12 +34,8 @@ struct StrandPlace {
   float u = 0;       ///< 0 at the root … 1 at the tip
 };
 
-/// Strands between two places.
-class StrandVisitor {
- public:
-  virtual ~StrandVisitor() = default;
-  virtual void cross(const SceneHit& hit) = 0;
-};
+/// Is told a strand on a ray.
+using StrandVisitor = std::function<void(const SceneHit&)>;
 
 /// World-space copies of all strands and meshes of a scene. Queries are const and thread-safe.
 ///
@@ -56,7 +52,8 @@ class RayScene {
   SceneHit intersect(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
   /// Tells every strand on the ray, in any order, a strand that is met n times n times. False where a mesh stands in the way.
-  bool cross_strands(const Ray& ray, StrandVisitor& visitor) const;
+  /// Flat curves only: Embree looks for hits of tubes by halving them, and tells the same one many times.
+  bool cross_strands(const Ray& ray, const StrandVisitor& visitor) const;
 
   StrandPlace strand_place(const SceneHit& hit) const;
   Surface surface(const SceneHit& hit) const;
@@ -76,10 +73,12 @@ class RayScene {
     std::vector<std::uint8_t> flags;         ///< [spans] linear: which neighbors there are
   };
   static Curves make_curves(const GroomInstance& groom);
-  void attach_curves(const Curves& curves, CurveShape shape);
+  void attach_curves(const Curves& curves);
 
+  CurveShape shape_;
   std::vector<WorldMesh> meshes_;
   std::vector<Curves> grooms_;
+  std::vector<std::uint8_t> has_caps_;  ///< [grooms] straight pieces overlap by caps at their ends, which are no further strand
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   std::size_t embree_bytes_ = 0;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "frame/frame.h"
-#include "shade/dual_scattering_tables.h"
+#include "frame/dual_scattering_tables.h"
 
 namespace pelage {
 

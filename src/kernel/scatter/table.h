@@ -1,4 +1,4 @@
-// Where to look in the table of mean forward attenuation a_f(cos theta, sigma_a) (shade/dual_scattering_tables.h): the
+// Where to look in the table of mean forward attenuation a_f(cos theta, sigma_a) (frame/dual_scattering_tables.h): the
 // caller fetches four neighbors, each target in its own way. One scalar table serves every color, strand and channel.
 
 const float kScatterTableRows = 65.0f;           // cos theta = row/(rows - 1)

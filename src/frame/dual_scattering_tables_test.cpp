@@ -1,5 +1,5 @@
 // The table of mean forward attenuation: its bound, against adaptive quadrature of traced rays' shares.
-#include "shade/dual_scattering_tables.h"
+#include "frame/dual_scattering_tables.h"
 
 #include <gtest/gtest.h>
 

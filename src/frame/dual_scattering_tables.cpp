@@ -1,4 +1,4 @@
-#include "shade/dual_scattering_tables.h"
+#include "frame/dual_scattering_tables.h"
 
 #include <array>
 #include <cmath>

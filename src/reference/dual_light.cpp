@@ -1,0 +1,86 @@
+#include "reference/dual_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "frame/fiber.h"
+
+namespace pelage {
+namespace {
+
+using Model = HairMaterial::Model;
+using namespace kernel;
+
+struct Angles {
+  float sin_i, cos_i, cos_phi;
+};
+
+Angles angles(const DualPlace& s, Vec3 to_light) {
+  const float sin_i = v_clamp(dot(to_light, s.tangent), -1, 1);
+  const Vec3 across = v_normalize(to_light - s.tangent * sin_i);
+  return {sin_i, std::sqrt(1 - sin_i * sin_i), v_clamp(dot(across, s.across), -1, 1)};
+}
+
+/// f·cos of the fiber itself.
+Vec3 single(const DualPlace& s, Angles a) {
+  if (s.model == Model::kKajiyaKay) return scatter_kajiya_kay(s.lobes, s.tuft_color, a.sin_i, a.cos_i);
+  if (s.model == Model::kZhu) return scatter_zhu(s.lobes, a.sin_i, a.cos_i, a.cos_phi);
+  return scatter_marschner(s.lobes, a.sin_i, a.cos_i, a.cos_phi);
+}
+
+/// The same of light that other fibers scattered forward to it.
+Vec3 forwarded(const DualPlace& s, float variance, Angles a) {
+  return s.model == Model::kZhu ? scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi)
+                                : scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+}
+
+}  // namespace
+
+DualLight::DualLight(const std::vector<GroomInstance>& grooms) {
+  for (const GroomInstance& groom : grooms) {
+    const bool tabulated = groom.material.model != Model::kKajiyaKay;
+    grooms_.push_back({groom.material, tabulated ? make_forward_attenuation_table(groom.material) : ForwardAttenuationTable{}});
+  }
+}
+
+DualPlace DualLight::place(std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_eye) const {
+  const HairMaterial& material = grooms_[groom].material;
+  const ScatterFiber fiber = make_fiber(material, color);
+  const float sin_o = v_clamp(dot(to_eye, tangent), -1, 1), cos_o = std::sqrt(1 - sin_o * sin_o);
+  DualPlace s;
+  s.model = material.model;
+  s.tangent = tangent;
+  s.across = v_normalize(to_eye - tangent * sin_o);
+  s.lobes = s.model == Model::kZhu ? scatter_prepare_zhu(fiber, sin_o, cos_o) : scatter_prepare_marschner(fiber, sin_o, cos_o);
+  s.averages = scatter_averages(s.lobes);
+  s.back = scatter_back(s.averages, s.lobes);
+  s.tuft_color = scatter_tuft_color(fiber.sigma_a, material.beta_azimuthal);
+  return s;
+}
+
+void DualLight::cross(CrossedStrands& crossed, std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_light) const {
+  const Entry& entry = grooms_[groom];
+  const Vec3 sigma_a = fiber_absorption(entry.material, color);
+  ++crossed.count;
+  if (entry.material.model == Model::kKajiyaKay) {  // half of what its diffuse lobe scatters goes on
+    crossed.attenuation = crossed.attenuation * scatter_tuft_color(sigma_a, entry.material.beta_azimuthal) * 0.5f;
+    return;
+  }
+  const float sin_i = v_clamp(dot(to_light, tangent), -1, 1), cos_i = std::sqrt(1 - sin_i * sin_i);
+  const ForwardAttenuationTable& table = entry.attenuation;
+  crossed.attenuation = crossed.attenuation *
+                        Vec3(table.lookup(cos_i, sigma_a.x), table.lookup(cos_i, sigma_a.y), table.lookup(cos_i, sigma_a.z));
+}
+
+// Zinke 2008, eq. 5 (transmittance) and section 4: direct light where nothing is crossed, else light that every strand on
+// the way scattered forward; each adds the variance of this strand's forward lobes, as they lie alike.
+Vec3 DualLight::evaluate(const DualPlace& s, Vec3 to_light, const CrossedStrands& crossed) {
+  const Angles a = angles(s, to_light);
+  if (s.model == Model::kKajiyaKay) return single(s, a) * crossed.attenuation;
+  if (crossed.count == 0) return single(s, a) + scatter_dual_local(s.back, 0, a.sin_i, a.cos_i, a.cos_phi);
+  const float variance = scatter_dual_variance(static_cast<float>(crossed.count), s.averages.v_f);
+  const Vec3 scattered = forwarded(s, variance, a) + scatter_dual_local(s.back, variance, a.sin_i, a.cos_i, a.cos_phi);
+  return scattered * crossed.attenuation * kDualDensity;
+}
+
+}  // namespace pelage
