@@ -14,9 +14,6 @@
 namespace pelage {
 namespace {
 
-/// Straight pieces that Embree cuts a flat span into: as many as it tests at a time anyway.
-constexpr float kTessellation = 8;
-
 RTCGeometryType geometry_type(CurveBasis basis, CurveShape shape) {
   const bool flat = shape == CurveShape::kFlat;
   switch (basis) {
@@ -105,7 +102,8 @@ void RayScene::attach_curves(const Curves& c) {
                              sizeof(std::uint32_t), c.first_point.size());
   if (!c.flags.empty())
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, c.flags.data(), 0, 1, c.flags.size());
-  if (c.basis != CurveBasis::kLinear && shape_ == CurveShape::kFlat) rtcSetGeometryTessellationRate(geometry, kTessellation);
+  if (c.basis != CurveBasis::kLinear && shape_ == CurveShape::kFlat)
+    rtcSetGeometryTessellationRate(geometry, kCurveTessellation);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);

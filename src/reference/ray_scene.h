@@ -15,6 +15,9 @@
 
 namespace pelage {
 
+/// Straight pieces that a flat span of a curved basis is cut into: as many as Embree tests at a time anyway.
+inline constexpr float kCurveTessellation = 8;
+
 /// Something that a ray met first.
 struct SceneHit {
   enum class Kind { kNone, kStrand, kMesh };
