@@ -22,6 +22,7 @@ void add_verbs(CLI::App& app) {
   add_info(app);
   add_convert(app);
   add_render(app);
+  add_compare(app);
   add_bench(app);
 }
 

@@ -121,7 +121,7 @@ struct SequenceComparison {
   std::vector<MetricValue> temporal;  ///< adjacent_psnr, adjacent_psnr_min, …, flicker over the whole sequence
 };
 /// As compare_images(), frame by frame; holds two frames of each sequence in memory. `read` gives frame i of a sequence;
-/// `options.mask` and `options.maps` must be empty; `hair` takes each frame's mask from its reference.
+/// `options.maps` must be empty; `options.mask` holds for every frame, `hair` takes each frame's from its reference instead.
 SequenceComparison compare_sequences(int frames, const std::function<Picture(int)>& read_test,
                                      const std::function<Picture(int)>& read_reference, bool hair = false,
                                      const CompareOptions& options = {});

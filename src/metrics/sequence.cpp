@@ -95,7 +95,7 @@ SequenceComparison compare_sequences(int frames, const std::function<Picture(int
                                      const std::function<Picture(int)>& read_reference, bool hair,
                                      const CompareOptions& options) {
   if (frames < 1) throw Error("sequence", "", "no frames", "");
-  if (!options.mask.empty() || !options.maps.empty()) throw Error("sequence", "", "masks and maps are of single pictures", "");
+  if (!options.maps.empty()) throw Error("sequence", "", "maps are of single pictures", "");
   SequenceComparison result;
   Frame now;
   for (int i = 0; i < frames; ++i) {

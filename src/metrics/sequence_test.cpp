@@ -89,7 +89,7 @@ TEST(Sequence, BadInputIsRefused) {
                    2, [](int i) { return gray(0, 8 + i, 8); }, [](int i) { return gray(0, 8 + i, 8); }),
                Error);
   CompareOptions options;
-  options.mask = {1};
+  options.maps = {"flip"};
   EXPECT_THROW(compare_sequences(
                    1, [](int) { return gray(0); }, [](int) { return gray(0); }, false, options),
                Error);
