@@ -8,6 +8,7 @@ void add_assemble_cases(Suite& suite);
 void add_raster_cases(Suite& suite);
 void add_light_cases(Suite& suite);
 void add_shade_cases(Suite& suite);
+void add_metrics_cases(Suite& suite);
 void add_frame_cases(Suite& suite);
 void add_reference_cases(Suite& suite);
 
@@ -18,6 +19,7 @@ Suite all_cases() {
   add_raster_cases(suite);
   add_light_cases(suite);
   add_shade_cases(suite);
+  add_metrics_cases(suite);
   add_frame_cases(suite);
   add_reference_cases(suite);
   return suite;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "metrics/naive_ssim.h"
 #include "metrics/test_pictures.h"
 
 namespace pelage::metrics {
@@ -14,34 +15,11 @@ double value_of(const Picture& test, const Picture& reference, const std::string
   return compare_images(test, reference, options).value(key).value();
 }
 
-struct Terms {
-  double similarity, structure;
-};
-
-// One window, its moments taken about their means.
-Terms window_at(const Image& t, const Image& r, int x, int y, std::size_t c) {
-  double weight = 0, mt = 0, mr = 0, vt = 0, vr = 0, cov = 0;
-  const auto for_each = [&](const auto& body) {
-    for (int dy = -5; dy <= 5; ++dy)
-      for (int dx = -5; dx <= 5; ++dx)
-        body(std::exp(-(dx * dx + dy * dy) / (2 * 1.5 * 1.5)), double{t.at(x + dx, y + dy)[c]},
-             double{r.at(x + dx, y + dy)[c]});
-  };
-  for_each([&](double w, double a, double b) { weight += w, mt += w * a, mr += w * b; });
-  mt /= weight, mr /= weight;
-  for_each([&](double w, double a, double b) {
-    vt += w * (a - mt) * (a - mt) / weight, vr += w * (b - mr) * (b - mr) / weight, cov += w * (a - mt) * (b - mr) / weight;
-  });
-  const double c1 = 1e-4, c2 = 9e-4;
-  const double structure = (2 * cov + c2) / (vt + vr + c2);
-  return {structure * (2 * mt * mr + c1) / (mt * mt + mr * mr + c1), structure};
-}
-
-Terms mean_terms(const Image& t, const Image& r, std::size_t c) {
-  Terms sum{0, 0};
+SsimTerms mean_terms(const Image& t, const Image& r, std::size_t c) {
+  SsimTerms sum{0, 0};
   for (int y = 5; y < t.height - 5; ++y)
     for (int x = 5; x < t.width - 5; ++x) {
-      const Terms w = window_at(t, r, x, y, c);
+      const SsimTerms w = naive_ssim(t, r, x, y, c);
       sum.similarity += w.similarity, sum.structure += w.structure;
     }
   const double count = static_cast<double>(t.width - 10) * (t.height - 10);
@@ -91,8 +69,8 @@ TEST(Ssim, RegionsAverageTheWindowsOfTheirPixels) {
   const Comparison c = compare_images(test, reference, options);
   double expected = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    expected += (window_at(test.image, reference.image, 20, 20, i).similarity +
-                 window_at(test.image, reference.image, 21, 20, i).similarity) /
+    expected += (naive_ssim(test.image, reference.image, 20, 20, i).similarity +
+                 naive_ssim(test.image, reference.image, 21, 20, i).similarity) /
                 6;
   EXPECT_NEAR(c.regions[0].values[0].value.value(), expected, 2e-6);
   EXPECT_EQ(c.regions[1].values[0].value, std::nullopt);
@@ -108,7 +86,7 @@ TEST(MsSsim, IsThatOfTheSlowDefinition) {
     double product = 1;
     for (std::size_t j = 0; j < 5; ++j) {
       if (j > 0) t = halved(t), r = halved(r);
-      const Terms terms = mean_terms(t, r, c);
+      const SsimTerms terms = mean_terms(t, r, c);
       product *= std::pow(j == 4 ? terms.similarity : terms.structure, weights[j]);
     }
     expected += product / 3;
