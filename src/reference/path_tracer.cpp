@@ -16,9 +16,6 @@
 namespace pelage {
 namespace {
 
-/// Paths that carry little are ended by chance from this scattering event on.
-constexpr int kFirstRoulette = 3;
-
 float largest(Vec3 c) { return std::max({c.x, c.y, c.z}); }
 
 /// Share of an estimate with density `p` where the other technique has `q`: Veach 1997, section 9.2.4
@@ -211,7 +208,7 @@ void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& rand
     if (!(scattered.pdf > 0)) return;
     throughput = throughput * scattered.value / scattered.pdf;
     if (tally.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
-    if (depth >= kFirstRoulette) {
+    if (depth >= settings.first_roulette) {
       const float survival = std::min(largest(throughput), 1.f);
       if (!(v[3] < survival)) return;
       throughput = throughput / survival;

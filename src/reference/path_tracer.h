@@ -36,12 +36,13 @@ struct PathSettings {
   Technique technique = Technique::kMis;
   CurveShape curve_shape = CurveShape::kFlat;  ///< kDual counts bands, whatever stands here
   int max_bounces = 70;                        ///< scattering events of a path, ≥ 1
-  bool shadows = true;                         ///< false: nothing keeps a light's or the environment's own light off
-  std::uint64_t seed = 0;                      ///< another seed, other random numbers
-  std::vector<Vec2> positions;                 ///< in the pixel, from its top left corner, 0…1: sample i stands at
-                                               ///< positions[i % size]; empty: anywhere in the pixel
-  std::optional<Camera> previous_camera;       ///< of the frame before, for PathSample::motion; none: it stood still
-  bool split = false;                          ///< fill PathSample::bounces and ::lobes
+  int first_roulette = 3;  ///< scattering events after which paths that carry little may end by chance, ≥ 0; the mean stays
+  bool shadows = true;     ///< false: nothing keeps a light's or the environment's own light off
+  std::uint64_t seed = 0;  ///< another seed, other random numbers
+  std::vector<Vec2> positions;            ///< in the pixel, from its top left corner, 0…1: sample i stands at
+                                          ///< positions[i % size]; empty: anywhere in the pixel
+  std::optional<Camera> previous_camera;  ///< of the frame before, for PathSample::motion; none: it stood still
+  bool split = false;                     ///< fill PathSample::bounces and ::lobes
 };
 
 /// What a ray through a pixel brought back, and the place that it met first.

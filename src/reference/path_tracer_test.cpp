@@ -152,6 +152,30 @@ TEST(PathTracer, BouncesAreIndependentOfTheirLimit) {
   EXPECT_EQ(mean_of_bounce(2, 2), 0);
 }
 
+// Ending paths by chance and looking for one of several lights change the noise, not the mean.
+TEST(PathTracer, ChancesAreMadeGood) {
+  Scene scene = mixed_scene();
+  scene.environment = {};
+  const auto mean_of = [&](std::vector<Light> lights, int first_roulette) {
+    scene.lights = std::move(lights);
+    PathSettings settings;
+    settings.first_roulette = first_roulette;
+    return estimate(PathTracer(scene, settings), scene, 64);
+  };
+  const std::vector<Light> all = scene.lights;
+  const Estimate together = mean_of(all, 3), never = mean_of(all, 1000), always = mean_of(all, 0);
+  Estimate sum;
+  for (const Light& light : all) {
+    const Estimate e = mean_of({light}, 3);
+    sum.mean += e.mean, sum.variance += e.variance;
+  }
+  std::printf("lights together %.5f ± %.5f, one by one %.5f ± %.5f; roulette never %.5f, always %.5f ± %.5f\n", together.mean,
+              std::sqrt(together.variance), sum.mean, std::sqrt(sum.variance), never.mean, always.mean,
+              std::sqrt(always.variance));
+  EXPECT_NEAR(together.mean, sum.mean, 3.5 * std::sqrt(together.variance + sum.variance));
+  EXPECT_NEAR(always.mean, never.mean, 3.5 * std::sqrt(always.variance + never.variance));
+}
+
 // 1 sample under each of 1024 seeds and 1024 samples under one: the same mean, pixel by pixel.
 TEST(PathTracer, SeedsAndSamplesHaveTheSameMean) {
   Scene scene = mixed_scene();

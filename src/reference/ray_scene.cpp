@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -68,7 +69,7 @@ RayScene::Curves RayScene::make_curves(const GroomInstance& groom) {
   Curves c;
   c.basis = set.basis;
   c.points.reserve(set.point_count() + (phantoms ? 2 * set.strand_count() : 0) + 1);
-  c.first_span.push_back(0);
+  c.spans.reserve(set.point_count());
   for (std::size_t s = 0; s < set.strand_count(); ++s) {
     const std::uint32_t begin = set.offsets[s], end = set.offsets[s + 1], spans = span_count(set.basis, end - begin);
     const auto first = static_cast<std::uint32_t>(c.points.size());
@@ -83,13 +84,11 @@ RayScene::Curves RayScene::make_curves(const GroomInstance& groom) {
     }
     if (set.basis == CurveBasis::kBezier) straighten_radii(&c.points[first], spans);
     for (std::uint32_t k = 0; k < spans; ++k) {
-      c.first_point.push_back(first + (set.basis == CurveBasis::kBezier ? 3 * k : k));
-      c.strand.push_back(static_cast<std::uint32_t>(s));
+      c.spans.push_back({first + (set.basis == CurveBasis::kBezier ? 3 * k : k), static_cast<std::uint32_t>(s), k, spans});
       if (set.basis == CurveBasis::kLinear)
         c.flags.push_back(static_cast<std::uint8_t>((k > 0 ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
                                                     (k + 1 < spans ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0)));
     }
-    c.first_span.push_back(static_cast<std::uint32_t>(c.first_point.size()));
   }
   return c;
 }
@@ -98,8 +97,8 @@ void RayScene::attach_curves(const Curves& c) {
   RTCGeometry geometry = rtcNewGeometry(device_, geometry_type(c.basis, shape_));
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, c.points.data(), 0, sizeof(Vec4),
                              c.points.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, c.first_point.data(), 0,
-                             sizeof(std::uint32_t), c.first_point.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, c.spans.data(), offsetof(Span, first_point),
+                             sizeof(Span), c.spans.size());
   if (!c.flags.empty())
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, c.flags.data(), 0, 1, c.flags.size());
   if (c.basis != CurveBasis::kLinear && shape_ == CurveShape::kFlat)
@@ -207,12 +206,11 @@ bool RayScene::cross_strands(const Ray& ray, const StrandVisitor& visitor) const
 
 StrandPlace RayScene::strand_place(const SceneHit& hit) const {
   const Curves& c = grooms_[hit.object];
-  const Vec4* p = &c.points[c.first_point[hit.primitive]];
+  const Span& span = c.spans[hit.primitive];
+  const Vec4* p = &c.points[span.first_point];
   StrandPlace place;
-  place.strand = c.strand[hit.primitive];
-  const std::uint32_t first = c.first_span[place.strand];
-  place.span = hit.primitive - first;
-  place.u = (static_cast<float>(place.span) + hit.u) / static_cast<float>(c.first_span[place.strand + 1] - first);
+  place.strand = span.strand, place.span = span.number;
+  place.u = (static_cast<float>(span.number) + hit.u) / static_cast<float>(span.count);
   if (c.basis == CurveBasis::kLinear) {
     place.axis = lerp(position(p[0]), position(p[1]), hit.u);
     place.radius = p[0].w + (p[1].w - p[0].w) * hit.u;
@@ -237,15 +235,13 @@ Surface RayScene::surface(const SceneHit& hit) const {
 
 std::size_t RayScene::span_total() const {
   std::size_t total = 0;
-  for (const Curves& c : grooms_) total += c.first_point.size();
+  for (const Curves& c : grooms_) total += c.spans.size();
   return total;
 }
 
 std::size_t RayScene::bytes() const {
   std::size_t total = embree_bytes_ + resident_bytes(meshes_);
-  for (const Curves& c : grooms_)
-    total += capacity_bytes(c.points) + capacity_bytes(c.first_point) + capacity_bytes(c.strand) +
-             capacity_bytes(c.first_span) + capacity_bytes(c.flags);
+  for (const Curves& c : grooms_) total += capacity_bytes(c.points) + capacity_bytes(c.spans) + capacity_bytes(c.flags);
   return total;
 }
 

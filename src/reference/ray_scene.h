@@ -66,14 +66,18 @@ class RayScene {
   RTCScene embree() const { return scene_; }
 
  private:
+  /// What one look at a span needs to know of it.
+  struct Span {
+    std::uint32_t first_point;  ///< of its control points
+    std::uint32_t strand;
+    std::uint32_t number, count;  ///< in the strand: which, of how many
+  };
   /// Spans of one groom. Control points of a strand stand together, phantoms included.
   struct Curves {
     CurveBasis basis = CurveBasis::kLinear;
-    std::vector<Vec4> points;                ///< world position and radius
-    std::vector<std::uint32_t> first_point;  ///< [spans] of the span's control points
-    std::vector<std::uint32_t> strand;       ///< [spans]
-    std::vector<std::uint32_t> first_span;   ///< [strands + 1]
-    std::vector<std::uint8_t> flags;         ///< [spans] linear: which neighbors there are
+    std::vector<Vec4> points;  ///< world position and radius
+    std::vector<Span> spans;
+    std::vector<std::uint8_t> flags;  ///< [spans] linear: which neighbors there are
   };
   static Curves make_curves(const GroomInstance& groom);
   void attach_curves(const Curves& curves);
