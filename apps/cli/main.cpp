@@ -23,6 +23,7 @@ void add_verbs(CLI::App& app) {
   add_convert(app);
   add_render(app);
   add_compare(app);
+  add_trace(app);
   add_bench(app);
 }
 

@@ -11,5 +11,6 @@
 #include <pelage/runtime.h>
 #include <pelage/scene.h>
 #include <pelage/strand_set.h>
+#include <pelage/trace.h>
 #include <pelage/triangle_mesh.h>
 #include <pelage/vec.h>

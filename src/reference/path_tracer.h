@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pelage/scene.h>
+#include <pelage/trace.h>
 
 #include <array>
 #include <cstddef>
@@ -12,23 +13,11 @@
 
 namespace pelage {
 
-/// What the picture is the integral of.
-enum class Integrator {
-  kPath,    ///< every bounce, up to PathSettings::max_bounces: the truth
-  kDual,    ///< dual scattering, with every strand on the way to a light counted by a ray (Zinke 2008)
-  kSingle,  ///< light that is scattered once
-};
-
 /// How light is found. All three have the same mean; lights without a size are always looked for from the surface.
 enum class Technique {
   kMis,   ///< both, weighted by the power heuristic
   kNee,   ///< by rays toward the lights
   kBsdf,  ///< by the rays that scatter
-};
-
-enum class CurveShape {
-  kFlat,   ///< bands that face each ray, as raster draws them
-  kRound,  ///< tubes
 };
 
 struct PathSettings {

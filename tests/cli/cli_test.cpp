@@ -25,7 +25,7 @@ TEST_F(Cli, HelpAndVersionSucceed) {
   EXPECT_THAT(run("--version").out, HasSubstr("pelage 0."));
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* verb : {"grow", "info", "convert", "render", "compare", "bench"}) {
+  for (const char* verb : {"grow", "info", "convert", "render", "trace", "compare", "bench"}) {
     EXPECT_THAT(help.out, HasSubstr(verb));
     const Outcome verb_help = run(std::string(verb) + " --help");
     EXPECT_EQ(verb_help.status, 0) << verb;

@@ -1,0 +1,129 @@
+"""The scene of cycles.sh inside Blender: blender -b --python cycles_scene.py -- GROOM.hair SCENE.json SAMPLES BOUNCES THREADS OUT.png
+
+Reads the very groom file and the camera, size and environment of the very scene file that `pelage trace` gets. Prints
+`seconds SECONDS` of the call that renders. Blender 3.4 makes hair objects from Python only by way of geometry nodes: the
+strands stand in a curve object, which a node group hands over to a hair object with their radii.
+"""
+import json
+import math
+import struct
+import sys
+import time
+
+import bpy
+import mathutils
+import numpy
+
+
+def read_cyhair(path):
+    """Points [strand][point][3] and the diameter of a groom that pelage wrote (meters, Z up), with Y up as in its scenes."""
+    data = open(path, "rb").read()
+    magic, strands, points, bits, segments, thickness = struct.unpack_from("<4sIIIIf", data)
+    assert magic == b"HAIR", "not a cyHAIR file"
+    at = 128
+    if bits & 1:
+        counts = numpy.frombuffer(data, "<u2", strands, at)
+        segments = int(counts[0])
+        assert (counts == segments).all(), "strands of one length are expected"
+        at += 2 * strands
+    xyz = numpy.frombuffer(data, "<f4", 3 * points, at).reshape(strands, segments + 1, 3)
+    at += 12 * points
+    if bits & 4:
+        thickness = float(numpy.median(numpy.frombuffer(data, "<f4", points, at)))
+    return numpy.stack([xyz[..., 0], xyz[..., 2], -xyz[..., 1]], axis=-1), thickness
+
+
+def strand_curves(xyz):
+    curves = bpy.data.curves.new("strands", "CURVE")
+    curves.dimensions = "3D"
+    for strand in xyz:
+        spline = curves.splines.new("POLY")
+        spline.points.add(len(strand) - 1)
+        spline.points.foreach_set("co", numpy.hstack([strand, numpy.ones((len(strand), 1), "f4")]).ravel())
+    return bpy.data.objects.new("strands", curves)
+
+
+def hair_object(strands, radius, material):
+    hair = bpy.data.objects.new("hair", bpy.data.hair_curves.new("hair"))
+    hair.data.materials.append(material)
+    group = bpy.data.node_groups.new("hair", "GeometryNodeTree")
+    group.inputs.new("NodeSocketGeometry", "in")
+    group.outputs.new("NodeSocketGeometry", "out")
+    info = group.nodes.new("GeometryNodeObjectInfo")
+    info.inputs["Object"].default_value = strands
+    set_radius = group.nodes.new("GeometryNodeSetCurveRadius")
+    set_radius.inputs["Radius"].default_value = radius
+    set_material = group.nodes.new("GeometryNodeSetMaterial")
+    set_material.inputs["Material"].default_value = material
+    output = group.nodes.new("NodeGroupOutput")
+    group.links.new(info.outputs["Geometry"], set_radius.inputs["Curve"])
+    group.links.new(set_radius.outputs["Curve"], set_material.inputs["Geometry"])
+    group.links.new(set_material.outputs["Geometry"], output.inputs[0])
+    hair.modifiers.new("hair", "NODES").node_group = group
+    return hair
+
+
+def hair_material():
+    material = bpy.data.materials.new("hair")
+    material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    hair = nodes.new("ShaderNodeBsdfHairPrincipled")
+    hair.parametrization = "MELANIN"
+    hair.inputs["Melanin"].default_value = 0.7
+    output = nodes.new("ShaderNodeOutputMaterial")
+    material.node_tree.links.new(hair.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def look(camera, eye, target):
+    """Y is up, as in the scene file."""
+    back = (mathutils.Vector(eye) - mathutils.Vector(target)).normalized()
+    right = mathutils.Vector((0, 1, 0)).cross(back).normalized()
+    camera.matrix_world = mathutils.Matrix.Translation(eye) @ mathutils.Matrix((right, back.cross(right), back)).transposed().to_4x4()
+
+
+def main():
+    groom, scene_file, samples, bounces, threads, out = sys.argv[sys.argv.index("--") + 1:]
+    description = json.load(open(scene_file))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    xyz, diameter = read_cyhair(groom)
+    strands = strand_curves(xyz)
+    hair = hair_object(strands, diameter / 2, hair_material())
+    scene.collection.objects.link(hair)
+
+    eye, target = description["camera"]["eye"], description["camera"]["target"]
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    camera.data.sensor_fit = "VERTICAL"
+    camera.data.angle = math.radians(description["camera"]["fov"])
+    camera.data.clip_start = 0.001
+    look(camera, eye, target)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+
+    scene.world = bpy.data.worlds.new("world")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (*description["environment"]["radiance"], 1)
+
+    render = scene.render
+    render.engine = "CYCLES"
+    width, height = description["settings"]["width"], description["settings"]["height"]
+    render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
+    render.threads_mode, render.threads = "FIXED", int(threads)
+    render.filepath = out
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.samples = int(samples)
+    cycles.use_adaptive_sampling = False
+    cycles.use_denoising = False
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = int(bounces)
+    cycles.transparent_max_bounces = int(bounces)
+    scene.cycles_curves.shape = "RIBBONS"
+
+    start = time.perf_counter()
+    bpy.ops.render.render(write_still=True)
+    print("seconds", time.perf_counter() - start)
+
+
+main()

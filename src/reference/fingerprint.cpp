@@ -1,0 +1,87 @@
+// What a picture depends on, as one number.
+#include <pelage/runtime.h>
+
+#include <type_traits>
+
+#include "io/xxh64.h"
+#include "reference/checkpoint.h"
+
+namespace pelage {
+namespace {
+
+/// Hashes values one by one: structs have padding, whose bytes mean nothing.
+class Fingerprint {
+ public:
+  template <class... T>
+  void add(const T&... values) {
+    (add_one(values), ...);
+  }
+  template <class T>
+  void add_array(const std::vector<T>& values) {
+    static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, float> || std::is_same_v<T, Vec2> ||
+                  std::is_same_v<T, Vec3>);
+    add_one(values.size());
+    hash_.add(values.data(), values.size() * sizeof(T));
+  }
+  std::uint64_t value() const { return hash_.value(); }
+
+ private:
+  template <class T>
+  void add_one(const T& value) {
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+    hash_.add(&value, sizeof value);
+  }
+  void add_one(const Vec3& v) { add(v.x, v.y, v.z); }
+  void add_one(const Affine& a) {
+    for (const auto& row : a.m)
+      for (const float v : row) add(v);
+  }
+  void add_one(const Camera& c) { add(c.projection, c.eye, c.target, c.up, c.fov_y, c.height, c.near_plane); }
+  void add_one(const Light& l) {
+    add(l.type, l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle, l.casts_shadow);
+  }
+  void add_one(const HairMaterial& m) {
+    add(m.model, m.color_source, m.eumelanin, m.pheomelanin, m.color, m.eta, m.beta_longitudinal, m.beta_azimuthal,
+        m.cuticle_tilt, m.specular_gain);
+  }
+  void add_one(const std::shared_ptr<const Image>& image) {
+    add(image != nullptr);
+    if (!image) return;
+    add(image->width, image->height, image->channel_count());
+    add_array(image->pixels);
+  }
+  void add_one(const StrandSet& s) {
+    add(s.basis);
+    add_array(s.points), add_array(s.widths), add_array(s.offsets), add_array(s.colors);
+  }
+  void add_one(const GroomInstance& g) {
+    add(g.material, g.transform, g.width_scale, g.strands != nullptr);
+    if (g.strands) add(*g.strands);
+  }
+  void add_one(const TriangleMesh& m) { add_array(m.positions), add_array(m.normals), add_array(m.uv), add_array(m.triangles); }
+  void add_one(const MeshInstance& m) {
+    add(m.texture, m.color, m.specular, m.roughness, m.transform, m.mesh != nullptr);
+    if (m.mesh) add(*m.mesh);
+  }
+
+  io::Xxh64 hash_;
+};
+
+}  // namespace
+
+std::uint64_t fingerprint(const Scene& scene, const TraceSettings& settings) {
+  Fingerprint f;
+  for (const char c : std::string(version())) f.add(c);
+  f.add(settings.integrator, settings.curve_shape, settings.max_bounces, settings.seed, settings.raster_positions);
+  if (settings.raster_positions) f.add(settings.samples);
+  f.add(scene.settings.width, scene.settings.height, scene.settings.shadows, scene.settings.dual_scattering);
+  f.add(scene.camera, scene.previous_camera.has_value());
+  if (scene.previous_camera) f.add(*scene.previous_camera);
+  for (const Light& light : scene.lights) f.add(light);
+  f.add(scene.environment.radiance, scene.environment.map, scene.environment.rotation, scene.environment.visible);
+  for (const GroomInstance& groom : scene.grooms) f.add(groom);
+  for (const MeshInstance& mesh : scene.meshes) f.add(mesh);
+  return f.value();
+}
+
+}  // namespace pelage
