@@ -8,6 +8,8 @@
 
 namespace pelage {
 
+class TileLocks;
+
 /// Covered places whose depth has not been tested yet. Walks append whole lanes, so there is room for one behind the end.
 struct FragmentBuffer {
   static constexpr std::size_t kCapacity = 4096;
@@ -23,7 +25,9 @@ struct FragmentBuffer {
 /// ([height·width], nearest wins). `fragments` is scratch of the calling thread.
 void raster_center(const ScreenBlock& block, int width, int height, FragmentBuffer& fragments, PixelKey* keys);
 
-/// The same for sample layers of 1, 2, 4, 8 or 16 samples a pixel; keys: [height·width·samples].
-void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, PixelKey* keys);
+/// The same for sample layers of 1, 2, 4, 8 or 16 samples a pixel; keys: [height·width·samples], 64-byte aligned, which
+/// all threads enter through the same `locks` of a width × height image.
+void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, TileLocks& locks,
+                    PixelKey* keys);
 
 }  // namespace pelage

@@ -15,6 +15,7 @@
 #include "raster/fragments.h"
 #include "raster/gbuffer.h"
 #include "raster/keys.h"
+#include "raster/tile_locks.h"
 
 namespace pelage {
 
@@ -51,11 +52,11 @@ void raster_conservative(const ScreenBlock& block, GBuffer& out) {
   }
 }
 
-void raster_block(Worker& worker, const RasterLayers& layers, GBuffer& out) {
+void raster_block(Worker& worker, const RasterLayers& layers, TileLocks& locks, GBuffer& out) {
   const ScreenBlock& block = worker.block;
   if (layers.center) raster_center(block, out.width, out.height, worker.fragments, out.center.data());
   if (layers.samples > 0)
-    raster_samples(block, out.width, out.height, layers.samples, worker.fragments, out.sample_keys.data());
+    raster_samples(block, out.width, out.height, layers.samples, worker.fragments, locks, out.sample_keys.data());
   if (layers.conservative) raster_conservative(block, out);
   if (layers.analytic) raster_analytic(block, worker.areas, out);
   if (layers.overdraw) count_overdraw(block, out);
@@ -66,6 +67,7 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
                              const RasterLayers& layers, GBuffer& out, SharedProgress& progress) {
   std::atomic<std::uint64_t> segments{0};
   tbb::enumerable_thread_specific<Worker> workers;
+  TileLocks locks(out.width, out.height);
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
     const AssembleJob job = make_assemble_job(scene, view, numbering, g);
     parallel_for(job.strands->strand_count(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
@@ -73,7 +75,7 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
       std::uint64_t points = 0;
       for (std::size_t s = begin; s < end;) {
         s = assemble_strands(job, s, end, worker.block);
-        raster_block(worker, layers, out);
+        raster_block(worker, layers, locks, out);
         points += worker.block.count;
       }
       segments.fetch_add(points, std::memory_order_relaxed);

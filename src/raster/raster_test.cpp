@@ -6,13 +6,16 @@
 #include <pelage/runtime.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "../bench/naive_raster.h"
 #include "assemble/assemble.h"
+#include "core/parallel.h"
 #include "frame/camera_view.h"
 #include "raster/gbuffer.h"
 #include "raster/test_scene.h"
+#include "raster/tile_locks.h"
 
 namespace pelage {
 namespace {
@@ -79,6 +82,17 @@ TEST(Raster, SameBitsForAnyThreadCountAndInstructionSet) {
   }
 }
 
+/// The center layer and one of samples by the plain way, of a scene that nothing clips.
+GBuffer plain(const Scene& scene, int width, int height, int samples) {
+  const CameraView view = make_camera_view(scene.camera, width, height);
+  const AssembleJob job = make_assemble_job(scene, view, number_segments(scene, view), 0);
+  GBuffer out;
+  clear_gbuffer(view, {.samples = samples}, out);
+  bench::naive_center(job, out.center);
+  bench::naive_samples(job, samples, out.sample_keys);
+  return out;
+}
+
 TEST(Raster, SameBitsAsThePlainWay) {
   for (const CurveBasis basis : {CurveBasis::kLinear, CurveBasis::kCatmullRom, CurveBasis::kBSpline, CurveBasis::kBezier})
     for (const int parts : {1, 3}) {
@@ -86,17 +100,57 @@ TEST(Raster, SameBitsAsThePlainWay) {
       set.basis = basis;
       Scene scene = test::scene_of(std::move(set));
       scene.settings.subdivisions = parts;
-      const CameraView view = make_camera_view(scene.camera, 320, 200);
-      const AssembleJob job = make_assemble_job(scene, view, number_segments(scene, view), 0);
-      const GBuffer fast = raster(scene, 320, 200, {.samples = 8});
-      GBuffer plain;
-      clear_gbuffer(view, {.samples = 8}, plain);
-      bench::naive_center(job, plain.center);
-      bench::naive_samples(job, 8, plain.sample_keys);
+      const GBuffer fast = raster(scene, 320, 200, {.samples = 8}), wanted = plain(scene, 320, 200, 8);
       EXPECT_GT(count_covered(fast.center), 500u);
-      EXPECT_TRUE(same(fast.center, plain.center)) << static_cast<int>(basis) << " in " << parts;
-      EXPECT_TRUE(same(fast.sample_keys, plain.sample_keys)) << static_cast<int>(basis) << " in " << parts;
+      EXPECT_TRUE(same(fast.center, wanted.center)) << static_cast<int>(basis) << " in " << parts;
+      EXPECT_TRUE(same(fast.sample_keys, wanted.sample_keys)) << static_cast<int>(basis) << " in " << parts;
     }
+}
+
+TEST(Raster, SampleLayersHaveTheBitsOfThePlainWayForAnyThreadCountAndInstructionSet) {
+  // Thin and wide, short segments and segments longer than a few tiles, on an image of many tiles.
+  for (const int points : {2, 40})
+    for (const float width : {1e-4f, 8e-3f}) {
+      const Scene scene = test::scene_of(test::helices(points == 2 ? 200 : 60, points, 0.004f, width));
+      for (const int samples : {1, 2, 4, 8, 16}) {
+        const GBuffer wanted = plain(scene, 700, 611, samples);
+        EXPECT_GT(count_covered(wanted.sample_keys), 1000u);
+        for (const std::string& isa : available_isas()) {
+          SCOPED_TRACE(isa + ", " + std::to_string(samples) + " samples, width " + std::to_string(width));
+          set_isa(isa);
+          for (const int threads : {1, 2, 5}) {
+            if (threads == 5 && samples != 8) continue;
+            set_thread_count(threads);
+            expect_same(wanted, raster(scene, 700, 611, {.samples = samples}));
+          }
+        }
+        set_isa(""), set_thread_count(0);
+      }
+    }
+}
+
+TEST(TileLocks, OneThreadOwnsATileAtATime) {
+  constexpr int kTiles = 5, kSide = TileLocks::kSide;
+  TileLocks locks(kTiles * kSide, kTiles * kSide - 1);
+  std::atomic<int> owners[kTiles][kTiles] = {};
+  std::atomic<int> shared{0};
+  set_thread_count(4);
+  parallel_for(500, 1, [&](std::size_t i, std::size_t) {
+    Rng rng(3, static_cast<std::uint32_t>(i));
+    const auto any_tile = [&](int from) { return from + static_cast<int>(rng.uniform() * static_cast<float>(kTiles - from)); };
+    const int x0 = any_tile(0), x1 = any_tile(x0), y0 = any_tile(0), y1 = any_tile(y0);
+    const auto for_tiles = [&](const auto& visit) {
+      for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) visit(owners[y][x]);
+    };
+    locks.own({x0 * kSide, x1 * kSide + kSide / 2, y0 * kSide, y1 * kSide + kSide / 2}, [&] {
+      for_tiles([&](std::atomic<int>& owner) { shared += owner.fetch_add(1) != 0; });
+      std::this_thread::yield();
+      for_tiles([](std::atomic<int>& owner) { --owner; });
+    });
+  });
+  set_thread_count(0);
+  EXPECT_EQ(shared, 0);
 }
 
 TEST(Raster, TakesAnySizeAndAnyNumberOfStrands) {

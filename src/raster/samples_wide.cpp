@@ -1,14 +1,18 @@
 // Sample layers, a segment per lane and a pixel at a time: all samples of a pixel share depth and half height, so each
 // costs an addition and a comparison, and a pixel's covered samples travel as one mask. The depth test then compares a
 // fragment with all samples of its pixel, one cache line of 64-bit keys at 8 samples.
+//
+// An atomic minimum a sample would cost more than the walk. Instead the fragments of a bunch of segments, neighbors on a
+// strand and on the screen, are entered together by a thread that owns their tiles (raster/tile_locks.h).
 #include "raster/fragments.h"
 
 #include <hwy/cache_control.h>
 
 #include <algorithm>
 
-#include "raster/keys.h"
 #include "frame/sample_positions.h"
+#include "raster/keys.h"
+#include "raster/tile_locks.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/samples_wide.cpp"
@@ -31,116 +35,224 @@ using Uints = hn::Vec<wide::UintTag>;
 const wide::FloatTag kFloat{};
 const wide::UintTag kUint{};
 
-/// Bit s tells whether `key` is smaller than key s of its pixel, as they are now.
+/// Lowers the samples in `mask` of a pixel that this thread owns to `key`.
 template <int kSamples>
-HWY_INLINE std::uint32_t nearer(PixelKey key, const PixelKey* pixel) {
-  std::uint32_t bits = 0;
-#if HWY_TARGET == HWY_AVX3
+HWY_INLINE void enter(PixelKey key, std::uint32_t mask, PixelKey* pixel) {
   const hn::CappedTag<std::uint64_t, kSamples> tag;
   const auto keys = hn::Set(tag, key);
   for (std::size_t s = 0; s < kSamples; s += hn::Lanes(tag)) {
-    std::uint8_t some = 0;
-    hn::StoreMaskBits(tag, hn::Lt(keys, hn::LoadU(tag, pixel + s)), &some);
-    bits |= static_cast<std::uint32_t>(some) << s;
+    const std::uint64_t bits = mask >> s;
+    const auto covered = hn::LoadMaskBits(tag, reinterpret_cast<const std::uint8_t*>(&bits));
+    const auto nearer = hn::And(covered, hn::Lt(keys, hn::Load(tag, pixel + s)));
+    hn::BlendedStore(keys, nearer, tag, pixel + s);
   }
-#else
-  for (int s = 0; s < kSamples; ++s)
-    bits |= static_cast<std::uint32_t>(key < __atomic_load_n(pixel + s, __ATOMIC_RELAXED)) << s;
-#endif
-  return bits;
 }
 
-/// Depth test and atomic minimum of everything in the buffer, which is empty afterwards.
+/// Depth test and minimum of fragments begin … end − 1, whose pixels this thread owns.
 template <int kSamples>
-void flush(FragmentBuffer& f, PixelKey* keys) {
-  constexpr std::size_t kAhead = 16;
-  const auto pixel_keys = [&](std::size_t i) { return keys + std::size_t{f.pixel[i]} * kSamples; };
-  std::fill(&f.pixel[f.count], &f.pixel[f.count] + FragmentBuffer::kPadding, f.count > 0 ? f.pixel[0] : 0);
-  for (std::size_t i = 0; i < std::min(kAhead, f.count); ++i) hwy::Prefetch(pixel_keys(i));
-  for (std::size_t i = 0; i < f.count; ++i) {
-    hwy::Prefetch(pixel_keys(i + kAhead));
-    PixelKey* const pixel = pixel_keys(i);
-    const PixelKey key = pixel_key(f.depth[i], f.id[i]);
-    for (std::uint32_t bits = f.mask[i] & nearer<kSamples>(key, pixel); bits != 0; bits &= bits - 1)
-      atomic_min(pixel[hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)], key);
+void enter_all(const FragmentBuffer& f, std::size_t begin, std::size_t end, PixelKey* keys) {
+  constexpr std::size_t kAhead = FragmentBuffer::kPadding;
+  const std::uint32_t *pixel = f.pixel.data(), *id = f.id.data(), *mask = f.mask.data();
+  const float* depth = f.depth.data();
+  for (std::size_t i = begin; i < end; ++i) {
+    hwy::Prefetch(keys + std::size_t{pixel[i + kAhead]} * kSamples);
+    enter<kSamples>(pixel_key(depth[i], id[i]), mask[i], keys + std::size_t{pixel[i]} * kSamples);
   }
-  f.count = 0;
 }
 
-/// Sample positions as the lanes of a bunch need them.
-struct SampleOffsets {
-  Float u[kMaxSamples], v[kMaxSamples];  // from the pixel's center, along each lane's axes
-  Float shift[kMaxSamples], growth[kMaxSamples];
+/// Where fragments wait for their tiles: a group for each bunch of segments.
+template <int kSamples>
+class SampleEntry {
+ public:
+  SampleEntry(int width, FragmentBuffer& fragments, TileLocks& locks, PixelKey* keys)
+      : width_(width), f_(fragments), locks_(locks), keys_(keys) {}
+
+  /// Fragments since the last group lie in `rect`.
+  void close_group(const PixelRect& rect) {
+    if (f_.count == begin_) return;
+    groups_[count_++] = {rect, f_.count};
+    begin_ = f_.count;
+    if (count_ == kMostGroups) flush();
+  }
+  bool full() const { return f_.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity; }
+  /// Enters all groups.
+  HWY_NOINLINE void flush() {
+    std::fill(&f_.pixel[f_.count], &f_.pixel[f_.count] + FragmentBuffer::kPadding, f_.count > 0 ? f_.pixel[0] : 0);
+    std::size_t begin = 0;
+    for (std::size_t g = 0; g < count_; begin = groups_[g++].end) enter_group(groups_[g].rect, begin, groups_[g].end);
+    f_.count = count_ = begin_ = 0;
+  }
+
+ private:
+  struct Group {
+    PixelRect rect;
+    std::size_t end;
+  };
+  static constexpr std::size_t kMostGroups = 64, kMostTiles = 32;
+
+  HWY_NOINLINE void enter_group(const PixelRect& rect, std::size_t begin, std::size_t end) {
+    if (TileLocks::count(rect) <= kMostTiles) return locks_.own(rect, [&] { enter_all<kSamples>(f_, begin, end, keys_); });
+    // Long or wide segments: others shall not wait for half the image.
+    for (std::size_t i = begin; i < end; ++i) {
+      const int pixel = static_cast<int>(f_.pixel[i]), x = pixel % width_, y = pixel / width_;
+      locks_.own({x, x, y, y}, [&] { enter_all<kSamples>(f_, i, i + 1, keys_); });
+    }
+  }
+
+  int width_;
+  FragmentBuffer& f_;
+  TileLocks& locks_;
+  PixelKey* keys_;
+  Group groups_[kMostGroups];
+  std::size_t count_ = 0, begin_ = 0;
 };
+
+/// What samples add to the terms of their pixel's center, on the segments of a bunch.
+template <int kSamples>
+struct SampleLanes {
+  Float along[kSamples];                     // the major axis
+  Float shift[kSamples], growth[kSamples];   // rule (1)
+  Float past_a[kSamples], past_b[kSamples];  // rule (2)
+  Float highest_shift, lowest_shift, most_growth, least_a, most_b;
+  Uints bit[kSamples];
+};
+
+template <int kSamples>
+HWY_INLINE void place_samples(const wide::RasterBand& band, SampleLanes<kSamples>& o) {
+  const auto positions = sample_positions(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const Float x(positions[i].x - 0.5f), y(positions[i].y - 0.5f);
+    const Float along = select(band.x_major, x, y), across = select(band.x_major, y, x);
+    o.along[i] = along;
+    o.bit[i] = hn::Set(kUint, 1u << i);
+    o.shift[i] = wide::raster_sample_shift(band, along, across);
+    o.growth[i] = wide::raster_sample_growth(band, along);
+    o.past_a[i] = wide::raster_cap_shift(band.cap_a, along, across);
+    o.past_b[i] = wide::raster_cap_shift(band.cap_b, along, across);
+    o.highest_shift = i == 0 ? o.shift[i] : max(o.highest_shift, o.shift[i]);
+    o.lowest_shift = i == 0 ? o.shift[i] : min(o.lowest_shift, o.shift[i]);
+    o.most_growth = i == 0 ? o.growth[i] : max(o.most_growth, o.growth[i]);
+    o.least_a = i == 0 ? o.past_a[i] : min(o.least_a, o.past_a[i]);
+    o.most_b = i == 0 ? o.past_b[i] : max(o.most_b, o.past_b[i]);
+  }
+}
+
+HWY_INLINE Uints with_bit(Uints mask, Mask m, Uints bit) {
+  return hn::IfThenElse(hn::RebindMask(kUint, m.m), hn::Or(mask, bit), mask);
+}
+HWY_INLINE Mask nonzero(Uints mask) { return {hn::RebindMask(kFloat, hn::Ne(mask, hn::Zero(kUint)))}; }
+
+/// Rows that the lanes of a bunch have visited.
+struct VisitedRows {
+  Float lowest, highest;
+  HWY_INLINE VisitedRows() : lowest(1.0e9f), highest(-1.0f) {}
+  HWY_INLINE void add(Mask m, Float from, Float to) {
+    lowest = select(m, min(lowest, from), lowest);
+    highest = select(m, max(highest, to), highest);
+  }
+  /// The pixels of these rows in all columns of the bunch.
+  PixelRect rect(const SegmentLanes& w) const {
+    const Mask any_row = highest >= Float(0.0f);
+    const auto least = [&](Float f) {
+      return static_cast<int>(hn::GetLane(hn::MinOfLanes(kFloat, select(any_row, f, Float(1.0e9f)).v)));
+    };
+    const auto most = [&](Float f) {
+      return static_cast<int>(hn::GetLane(hn::MaxOfLanes(kFloat, select(any_row, f, Float(-1.0f)).v)));
+    };
+    const Mask x = w.band.x_major;
+    return {least(select(x, w.column, lowest)), most(select(x, w.last, highest)), least(select(x, lowest, w.column)),
+            most(select(x, highest, w.last))};
+  }
+};
+
+template <int kSamples>
+HWY_NOINLINE void make_room(const SegmentLanes& w, const VisitedRows& visited, SampleEntry<kSamples>& entry) {
+  entry.close_group(visited.rect(w));
+  entry.flush();
+}
 
 /// One column of each lane: appends the pixels with covered samples.
 template <int kSamples>
-HWY_INLINE void visit_column(const SegmentLanes& w, const SampleOffsets& o, Float column, FragmentBuffer& f, PixelKey* keys) {
+HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>& o, Float column, Uints first_pixel,
+                             FragmentBuffer& f, VisitedRows& visited, SampleEntry<kSamples>& entry) {
   const wide::RasterBand& band = w.band;
   const Float u = column + Float(0.5f), s = u - band.u;
   const Float center = wide::raster_band_center(band, s), half = wide::raster_band_half(band, s);
-  const Float highest = min(wide::raster_highest_row(band, center, half), w.rows - Float(1.0f));
-  Float row = max(wide::raster_lowest_row(band, center, half), Float(0.0f));
-  for (Mask open = column <= w.last && row <= highest; wide::any(open); open = open && row <= highest) {
+  // Rows beyond which no sample is covered, with a margin for roundings.
+  const Float reach = half + (o.most_growth + Float(0.02f));
+  const Float highest = min(floor(center + (reach - o.lowest_shift) - Float(0.5f)), w.rows - Float(1.0f));
+  Float row = max(ceil(center - (reach + o.highest_shift) - Float(0.5f)), Float(0.0f));
+  Mask open = column <= w.last && row <= highest;
+  if (!wide::any(open)) return;
+  visited.add(open, row, highest);
+  Uints inside = hn::Set(kUint, (1u << kSamples) - 1);
+  const Mask at_end = open && (u - Float(0.5f) < band.first || u + Float(0.5f) > band.last);
+  if (wide::any(at_end)) {
+    inside = hn::Zero(kUint);
+    for (int i = 0; i < kSamples; ++i) inside = with_bit(inside, wide::raster_between_ends(band, u + o.along[i]), o.bit[i]);
+  }
+  const Uints pixel_depth = hn::BitCast(kUint, wide::raster_band_depth(band, s).v);
+  Uints pixel = hn::Add(first_pixel, hn::Mul(hn::BitCast(kUint, hn::NearestInt(row.v)), w.row_step));
+  do {
     const Float v = row + Float(0.5f), above_center = v - center;
     Uints mask = hn::Zero(kUint);
-    for (int i = 0; i < kSamples; ++i) {
-      const Mask covered = wide::raster_sample_covered(above_center, o.shift[i], half, o.growth[i]);
-      mask = hn::Or(mask, hn::IfThenElseZero(hn::RebindMask(kUint, covered.m), hn::Set(kUint, 1u << i)));
-    }
-    mask = hn::IfThenElseZero(hn::RebindMask(kUint, open.m), mask);
+    for (int i = 0; i < kSamples; ++i)
+      mask = with_bit(mask, wide::raster_sample_covered(above_center, o.shift[i], half, o.growth[i]), o.bit[i]);
+    mask = hn::IfThenElseZero(hn::RebindMask(kUint, open.m), hn::And(mask, inside));
+    const Mask some = nonzero(mask);
     const Float side_a = wide::raster_cap_side(band.cap_a, u, v, band.u, band.v);
     const Float side_b = wide::raster_cap_side(band.cap_b, u, v, band.end_u, band.end_v);
-    const Mask cut = open && !wide::raster_pixel_between_caps(band, side_a, side_b, u);
-    if (wide::any(cut)) {
-      Uints between = hn::Zero(kUint);
-      for (int i = 0; i < kSamples; ++i) {
-        const Mask inside = wide::raster_sample_between_caps(band, side_a, side_b, u, o.u[i], o.v[i]);
-        between = hn::Or(between, hn::IfThenElseZero(hn::RebindMask(kUint, inside.m), hn::Set(kUint, 1u << i)));
-      }
-      mask = hn::IfThenElse(hn::RebindMask(kUint, cut.m), hn::And(mask, between), mask);
+    // Adding rounds monotonically: where the least of the samples is past the cap, all are.
+    if (wide::any(some && !wide::raster_past_cap(side_a, o.least_a))) {
+      Uints past = hn::Zero(kUint);
+      for (int i = 0; i < kSamples; ++i) past = with_bit(past, wide::raster_past_cap(side_a, o.past_a[i]), o.bit[i]);
+      mask = hn::And(mask, past);
     }
-    const auto some = hn::Ne(mask, hn::Zero(kUint));
-    if (!hn::AllFalse(kUint, some)) {
-      if (f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity) flush<kSamples>(f, keys);
-      const Compressor compress(Mask{hn::RebindMask(wide::kFloatTag, some)});
-      hn::StoreU(compress(pixels_at(w, column, row)), kUint, &f.pixel[f.count]);
-      hn::StoreU(compress(hn::BitCast(kUint, wide::raster_band_depth(band, s).v)), kUint,
-                 reinterpret_cast<std::uint32_t*>(&f.depth[f.count]));
-      hn::StoreU(compress(w.id), kUint, &f.id[f.count]);
-      hn::StoreU(compress(mask), kUint, &f.mask[f.count]);
-      f.count += compress.count();
+    if (wide::any(some && !wide::raster_before_cap(side_b, o.most_b))) {
+      Uints before = hn::Zero(kUint);
+      for (int i = 0; i < kSamples; ++i) before = with_bit(before, wide::raster_before_cap(side_b, o.past_b[i]), o.bit[i]);
+      mask = hn::And(mask, before);
     }
+    if (entry.full()) make_room(w, visited, entry);
+    const Compressor compress(nonzero(mask));
+    hn::StoreU(compress(pixel), kUint, &f.pixel[f.count]);
+    hn::StoreU(compress(pixel_depth), kUint, reinterpret_cast<std::uint32_t*>(&f.depth[f.count]));
+    hn::StoreU(compress(w.id), kUint, &f.id[f.count]);
+    hn::StoreU(compress(mask), kUint, &f.mask[f.count]);
+    f.count += compress.count();
     row = row + Float(1.0f);
-  }
+    pixel = hn::Add(pixel, w.row_step);
+    open = open && row <= highest;
+  } while (wide::any(open));
 }
 
 template <int kSamples>
-void samples_of_block(const ScreenBlock& block, int width, int height, FragmentBuffer& f, PixelKey* keys) {
-  const auto positions = sample_positions(kSamples);
+void samples_of_block(const ScreenBlock& block, int width, int height, FragmentBuffer& f, TileLocks& locks, PixelKey* keys) {
+  SampleEntry<kSamples> entry(width, f, locks, keys);
   SegmentLanes w;
-  SampleOffsets o;
+  SampleLanes<kSamples> o;
   for (std::size_t j = 0; j + 1 < block.count; j += hn::Lanes(kUint)) {
     if (!load_segments(block, j, width, height, 0.0f, 1.0f, w)) continue;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const Float x(positions[i].x - 0.5f), y(positions[i].y - 0.5f);
-      o.u[i] = select(w.band.x_major, x, y), o.v[i] = select(w.band.x_major, y, x);
-      o.shift[i] = wide::raster_sample_shift(w.band, o.u[i], o.v[i]);
-      o.growth[i] = wide::raster_sample_growth(w.band, o.u[i]);
+    place_samples(w.band, o);
+    VisitedRows visited;
+    Uints first_pixel = hn::Mul(hn::BitCast(kUint, hn::NearestInt(w.column.v)), w.column_step);
+    for (Float column = w.column; wide::any(column <= w.last); column = column + Float(1.0f)) {
+      visit_column<kSamples>(w, o, column, first_pixel, f, visited, entry);
+      first_pixel = hn::Add(first_pixel, w.column_step);
     }
-    for (Float column = w.column; wide::any(column <= w.last); column = column + Float(1.0f))
-      visit_column<kSamples>(w, o, column, f, keys);
+    entry.close_group(visited.rect(w));
   }
-  flush<kSamples>(f, keys);
+  entry.flush();
 }
 
-void Samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& f, PixelKey* keys) {
+void Samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& f, TileLocks& locks,
+             PixelKey* keys) {
   switch (samples) {
-    case 1: return samples_of_block<1>(block, width, height, f, keys);
-    case 2: return samples_of_block<2>(block, width, height, f, keys);
-    case 4: return samples_of_block<4>(block, width, height, f, keys);
-    case 8: return samples_of_block<8>(block, width, height, f, keys);
-    case 16: return samples_of_block<16>(block, width, height, f, keys);
+    case 1: return samples_of_block<1>(block, width, height, f, locks, keys);
+    case 2: return samples_of_block<2>(block, width, height, f, locks, keys);
+    case 4: return samples_of_block<4>(block, width, height, f, locks, keys);
+    case 8: return samples_of_block<8>(block, width, height, f, locks, keys);
+    case 16: return samples_of_block<16>(block, width, height, f, locks, keys);
   }
 }
 
@@ -154,8 +266,9 @@ namespace pelage {
 
 HWY_EXPORT(Samples);
 
-void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, PixelKey* keys) {
-  HWY_DYNAMIC_DISPATCH(Samples)(block, width, height, samples, fragments, keys);
+void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, TileLocks& locks,
+                    PixelKey* keys) {
+  HWY_DYNAMIC_DISPATCH(Samples)(block, width, height, samples, fragments, locks, keys);
 }
 
 }  // namespace pelage

@@ -100,11 +100,15 @@ PELAGE_FN Float raster_lowest_row(RasterBand r, Float center, Float half) {
 PELAGE_FN Float raster_highest_row(RasterBand r, Float center, Float half) {
   return floor(center + (half + abs(r.slope + r.half_slope) * Float(0.5f)));
 }
-// Rules (2) and (3) of a sample, from the sides of its pixel's center (u, v).
+// Rule (2) of a sample, from the sides of its pixel's center and what its offset adds to them, and rule (3) at u.
+PELAGE_FN Float raster_cap_shift(Vec2 cap, Float o_u, Float o_v) { return cap.x * o_u + cap.y * o_v; }
+PELAGE_FN Mask raster_past_cap(Float side, Float shift) { return side + shift >= Float(0.0f); }
+PELAGE_FN Mask raster_before_cap(Float side, Float shift) { return side + shift < Float(0.0f); }
+PELAGE_FN Mask raster_between_ends(RasterBand r, Float u) { return (u >= r.first) && (u <= r.last); }
+// Both rules of a sample.
 PELAGE_FN Mask raster_sample_between_caps(RasterBand r, Float side_a, Float side_b, Float u, Float o_u, Float o_v) {
-  Float at_a = side_a + (r.cap_a.x * o_u + r.cap_a.y * o_v);
-  Float at_b = side_b + (r.cap_b.x * o_u + r.cap_b.y * o_v);
-  return (at_a >= Float(0.0f)) && (at_b < Float(0.0f)) && (u + o_u >= r.first) && (u + o_u <= r.last);
+  return raster_past_cap(side_a, raster_cap_shift(r.cap_a, o_u, o_v)) &&
+         raster_before_cap(side_b, raster_cap_shift(r.cap_b, o_u, o_v)) && raster_between_ends(r, u + o_u);
 }
 // Whether the whole pixel around (u, v) keeps rules (2) and (3), with a margin for roundings.
 PELAGE_FN Mask raster_pixel_between_caps(RasterBand r, Float side_a, Float side_b, Float u) {
