@@ -111,10 +111,7 @@ Scene read_scene(const std::string& path, const Progress& progress) {
   const ByteSource source = ByteSource::open(path);
   if (source.size() == 0) throw Error(path, "", "the file is empty", "a scene file is a JSON object");
   if (source.size() > kMostBytes) throw Error(path, "", "more than 64 MiB of JSON", "grooms stand in files of their own");
-  const JsonDocument document(path, source.read_all());
-  SceneText text;
-  read_object(JsonValue(document), scene_fields(), text);
-  return Loader(path, progress).load(text);
+  return Loader(path, progress).load(read_scene_text(path, source.read_all()));
 }
 
 }  // namespace pelage

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <iterator>
 #include <optional>
+#include <set>
 
 #include "core/nearest.h"
 
@@ -44,17 +45,24 @@ class CountingIterator {
   int* line_;
 };
 
-// Notes the line of every key, and of every array element that is a container (a number is only known to the parser
-// once it has read on, maybe over a line's end; it has the line of its array). Finds repeated keys.
-class LineNotes final : public nlohmann::json_sax<json> {
+// Walks through a document once, with memory for what is open only. Finds the line of one key or element (or of the nearest
+// around it: a number in an array has the line of its array, because the parser only knows it once it has read on), the
+// first key that is given twice, and nesting that no scene has.
+class Walk final : public nlohmann::json_sax<json> {
  public:
-  LineNotes(const int& line, std::map<std::string, int>& lines) : line_(line), lines_(lines) {}
-
-  struct Repeated {
+  struct Place {
     std::string pointer;
     int line;
   };
-  const std::optional<Repeated>& repeated_key() const { return repeated_; }
+
+  Walk(const std::vector<char>& text, const std::string& sought) : sought_(sought) {
+    const char* const begin = text.data();
+    const char* const end = begin + text.size();
+    json::sax_parse(CountingIterator(begin, &line_), CountingIterator(end, &line_), this);
+  }
+  int found_line() const { return found_line_; }
+  const std::optional<Place>& repeated_key() const { return repeated_; }
+  const std::optional<Place>& too_deep() const { return too_deep_; }
 
   bool null() override { return next(); }
   bool boolean(bool) override { return next(); }
@@ -68,30 +76,39 @@ class LineNotes final : public nlohmann::json_sax<json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
-    open_.back().key = name;
-    if (!lines_.emplace(pointer(), line_).second && !repeated_) repeated_ = Repeated{pointer(), line_};
+    Container& object = open_.back();
+    path_.resize(object.prefix);
+    (path_ += '/') += name;
+    compare();
+    if (!object.keys.insert(name).second && !repeated_) repeated_ = Place{path_, line_};
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
  private:
+  static constexpr std::size_t kMostOpen = 64;
+
   struct Container {
     bool is_array;
-    std::size_t index;
-    std::string key;
-    std::size_t prefix;  // length of path_ without this container's own step
+    std::size_t prefix;  // length of path_ up to the container itself
+    std::size_t index = 0;
+    std::set<std::string> keys;
   };
-  std::string step() const {
-    if (open_.empty()) return "";
-    return "/" + (open_.back().is_array ? std::to_string(open_.back().index) : open_.back().key);
+  // path_ stands at the sought place or around it; what is met later is nearer.
+  void compare() {
+    if (path_.size() <= sought_.size() && sought_.starts_with(path_) &&
+        (path_.size() == sought_.size() || sought_[path_.size()] == '/'))
+      found_line_ = line_;
   }
-  std::string pointer() const { return path_ + step(); }
   bool open(bool is_array) {
-    if (!open_.empty() && open_.back().is_array) lines_.emplace(pointer(), line_);
-    const std::size_t prefix = path_.size();
-    path_ += step();
-    open_.push_back({is_array, 0, "", prefix});
-    return true;
+    if (!open_.empty() && open_.back().is_array) {
+      path_.resize(open_.back().prefix);
+      (path_ += '/') += std::to_string(open_.back().index);
+      compare();
+    }
+    if (open_.size() == kMostOpen) too_deep_ = Place{path_, line_};
+    open_.push_back({is_array, path_.size(), 0, {}});
+    return !too_deep_;
   }
   bool close() {
     path_.resize(open_.back().prefix);
@@ -103,11 +120,11 @@ class LineNotes final : public nlohmann::json_sax<json> {
     return true;
   }
 
-  const int& line_;
-  std::map<std::string, int>& lines_;
+  const std::string& sought_;
+  int line_ = 1, found_line_ = 1;
   std::vector<Container> open_;
   std::string path_;
-  std::optional<Repeated> repeated_;
+  std::optional<Place> repeated_, too_deep_;
 };
 
 // "[json.exception.parse_error.101] parse error at line 3, column 5: …" without what a person cannot use.
@@ -118,26 +135,20 @@ std::string plain_message(const std::string& what) {
 
 }  // namespace
 
-JsonDocument::JsonDocument(std::string name, const std::vector<char>& text) : name_(std::move(name)) {
-  const char* const begin = text.data();
-  const char* const end = begin + text.size();
+JsonDocument::JsonDocument(std::string name, std::vector<char> text) : name_(std::move(name)), text_(std::move(text)) {
+  const Walk walk(text_, "");
+  if (const auto& deep = walk.too_deep())
+    throw Error(name_, fmt::format("line {}", deep->line), "objects and arrays nested too deep", "a scene file is flat");
   try {
-    root_ = json::parse(begin, end);
+    root_ = json::parse(text_.begin(), text_.end());
   } catch (const json::exception& e) {
     throw Error(name_, "", plain_message(e.what()), "a scene file is JSON; see docs/scene.schema.json");
   }
-  int line = 1;
-  LineNotes notes(line, lines_);
-  json::sax_parse(CountingIterator(begin, &line), CountingIterator(end, &line), &notes);
-  if (const auto& repeated = notes.repeated_key())
+  if (const auto& repeated = walk.repeated_key())
     throw Error(name_, fmt::format("line {}: {}", repeated->line, repeated->pointer), "this key is given twice", "keep one");
 }
 
-int JsonDocument::line_of(const std::string& pointer) const {
-  for (std::string p = pointer; !p.empty(); p.resize(p.rfind('/')))
-    if (const auto found = lines_.find(p); found != lines_.end()) return found->second;
-  return 1;
-}
+int JsonDocument::line_of(const std::string& pointer) const { return Walk(text_, pointer).found_line(); }
 
 void JsonValue::fail(const std::string& problem, const std::string& remedy) const {
   const std::string place = fmt::format("line {}: {}", document_->line_of(pointer_), pointer_.empty() ? "/" : pointer_);

@@ -14,25 +14,26 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace pelage::io {
 
-/// A JSON document with the line of every key and element. Throws Error on malformed JSON and on repeated keys.
+/// A JSON document that knows the line of every key and element. Throws Error on malformed JSON, on repeated keys and on
+/// nesting that no scene has. Memory is proportional to the text.
 class JsonDocument {
  public:
-  JsonDocument(std::string name, const std::vector<char>& text);
+  JsonDocument(std::string name, std::vector<char> text);
   const std::string& name() const { return name_; }
   const nlohmann::json& root() const { return root_; }
+  /// Of the place that a JSON pointer names, or of what is around it. Reads the text again: for messages.
   int line_of(const std::string& pointer) const;
 
  private:
   std::string name_;
+  std::vector<char> text_;
   nlohmann::json root_;
-  std::map<std::string, int> lines_;
 };
 
 /// A node of a document with its place in it, for messages. Cheap to copy; the document must outlive it.

@@ -2,6 +2,7 @@
 #include "io/scene_tables.h"
 
 #include <cmath>
+#include <utility>
 
 #include "frame/sample_positions.h"
 
@@ -245,6 +246,13 @@ const Fields<SceneText>& scene_fields() {
       object_field("settings", "How the picture is made", &SceneText::settings, settings_fields()),
   };
   return table;
+}
+
+SceneText read_scene_text(const std::string& name, std::vector<char> json) {
+  const JsonDocument document(name, std::move(json));
+  SceneText text;
+  read_object(JsonValue(document), scene_fields(), text);
+  return text;
 }
 
 std::string scene_schema() {

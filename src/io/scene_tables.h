@@ -57,6 +57,9 @@ struct SceneText {
   RenderSettings settings;
 };
 
+/// Throws Error that names line and key. Loads nothing.
+SceneText read_scene_text(const std::string& name, std::vector<char> json);
+
 /// The keys of a scene file.
 const Fields<SceneText>& scene_fields();
 

@@ -149,6 +149,8 @@ TEST_F(SceneFile, WrongValuesAreTold) {
 }
 
 TEST_F(SceneFile, BrokenJsonNamesItsLine) {
+  EXPECT_EQ(error("{\n\"settings\": {\"view\": " + std::string(70, '[') + "\n" + std::string(70, ']') + "}}"),
+            "line 2: objects and arrays nested too deep (a scene file is flat)");
   EXPECT_NE(error("{\n\"camera\": \n}").find("line 3"), std::string::npos);
   EXPECT_NE(error("").find("the file is empty"), std::string::npos);
   EXPECT_FALSE(error("{\"settings\": {\"exposure\": 1e999}}").empty());

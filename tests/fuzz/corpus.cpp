@@ -59,6 +59,18 @@ std::string glb() {
   return "glTF" + u(2) + u(12 + chunks.size()) + chunks;
 }
 
+// Every kind of field once; the named files are only names here.
+constexpr const char* kScene = R"({"$schema": "scene.schema.json",
+  "camera": {"projection": "perspective", "eye": [0, 1.6, 2], "target": [0, 1.5, 0], "up": [0, 1, 0], "fov": 30, "near": 0.01},
+  "lights": [{"type": "spot", "name": "key", "position": [1, 2, 3], "direction": [0, -1, 0], "intensity": [1, 1, 1],
+              "inner_angle": 10, "outer_angle": 20, "casts_shadow": false}],
+  "environment": {"radiance": [0.1, 0.1, 0.1], "map": "sky.exr", "rotation": 90, "visible": true},
+  "meshes": [{"name": "head", "shape": "mannequin", "color": [0.4, 0.3, 0.2], "transform": {"rotate": [0, 90, 0], "scale": 2}}],
+  "grooms": [{"name": "hair", "grow": {"style": "curly", "strands": 100, "points": 8, "surface": "head"},
+              "material": {"model": "zhu", "eumelanin": 1}},
+             {"file": "a.hair", "import": {"scale": 0.01, "up": "z"}}],
+  "settings": {"width": 64, "height": 48, "samples": 4, "view": "depth", "background": [0, 0, 0], "exposure": -1}})";
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -87,5 +99,10 @@ int main(int argc, char** argv) {
   spill(folder("mesh_glb") + "triangle", glb());
   spill(folder("mesh_tfxmesh") + "triangle",
         "numOfBones 1\n0 root\nnumOfVertices 3\n0 0 0 0 0 0 1\n1 1 0 0 0 0 1\n2 0 1 0 0 0 1\nnumOfTriangles 1\n0 0 1 2\n");
+  spill(folder("scene") + "everything", kScene);
+  Image image(5, 3, {"R", "G", "B", "A"});
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i % 7) / 7;
+  write_image(folder("image_png") + "small.png", image);
+  write_image(folder("image_png") + "sixteen.png", image, true);
   return 0;
 }

@@ -9,8 +9,11 @@
 #include <cstring>
 #include <span>
 #include <string_view>
+#include <vector>
 
+#include "io/image_png.h"
 #include "io/mesh_formats.h"
+#include "io/scene_tables.h"
 #include "io/strand_registry.h"
 #include "io/xxh64.h"
 
@@ -65,9 +68,29 @@ inline void read_sealed_groom(std::span<std::byte> bytes) {
   read_groom(bytes);
 }
 
+/// A scene file's text alone: nothing that it names is loaded.
+inline void read_scene(std::span<const std::byte> bytes) {
+  const auto* const text = reinterpret_cast<const char*>(bytes.data());
+  try {
+    io::read_scene_text("fuzz", std::vector<char>(text, text + bytes.size()));
+  } catch (const Error&) {
+  }
+}
+
+inline void read_png(std::span<const std::byte> bytes) {
+  try {
+    const Image image = io::read_png(io::ByteSource("fuzz", bytes));
+    for (const float x : image.pixels)
+      if (!(x >= 0 && x <= 1)) std::abort();
+  } catch (const Error&) {
+  }
+}
+
 /// Calls the reader for a corpus file named `<reader>-<anything>`.
 inline void replay(std::string_view name, std::span<const std::byte> bytes) {
   if (name.starts_with("mesh")) read_mesh(bytes);
+  else if (name.starts_with("scene")) read_scene(bytes);
+  else if (name.starts_with("image_png")) read_png(bytes);
   else read_groom(bytes);
 }
 
