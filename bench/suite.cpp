@@ -9,6 +9,7 @@ void add_raster_cases(Suite& suite);
 void add_light_cases(Suite& suite);
 void add_shade_cases(Suite& suite);
 void add_metrics_cases(Suite& suite);
+void add_filter_cases(Suite& suite);
 void add_frame_cases(Suite& suite);
 void add_reference_cases(Suite& suite);
 
@@ -20,6 +21,7 @@ Suite all_cases() {
   add_light_cases(suite);
   add_shade_cases(suite);
   add_metrics_cases(suite);
+  add_filter_cases(suite);
   add_frame_cases(suite);
   add_reference_cases(suite);
   return suite;

@@ -1,5 +1,6 @@
 #include "picture_file.h"
 
+#include <fmt/format.h>
 #include <pelage/error.h>
 
 #include <algorithm>
@@ -12,6 +13,18 @@ namespace pelage::cli {
 std::string extension_of(const std::string& path) {
   const std::size_t dot = path.find_last_of("./");
   return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot + 1);
+}
+
+bool is_numbered(const std::string& path) {
+  const std::size_t last = path.find_last_of("#/");
+  return last != std::string::npos && path[last] == '#';
+}
+
+std::string numbered(const std::string& path, int number) {
+  if (!is_numbered(path)) return path;
+  const std::size_t last = path.find_last_of('#'), before = path.find_last_not_of('#', last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  return path.substr(0, first) + fmt::format("{:0{}}", number, last + 1 - first) + path.substr(last + 1);
 }
 
 void check_output(const std::string& path) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <pelage/error.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -16,8 +17,16 @@
 namespace pelage::cli {
 namespace {
 
+constexpr int kDefaultPictures = 16;  // of a sequence
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<std::string> channels_of_layer(const std::string& name) {
+  if (name == "id" || name == "tangent" || name == "albedo") return {".R", ".G", ".B"};
+  if (name == "motion") return {".X", ".Y"};
+  return {""};
 }
 
 // Appends the channels of other views of the same scene: their own passes, without light.
@@ -30,10 +39,8 @@ void append_layers(const Scene& scene, const std::vector<std::string>& layers, c
     Scene pass = scene;
     pass.settings.view = layer->second;
     const Image data = render(pass, progress).linear;
-    const bool color = name == "id" || name == "tangent" || name == "albedo";
-    const std::vector<std::string> suffixes = color ? std::vector<std::string>{".R", ".G", ".B"} : std::vector<std::string>{""};
     std::vector<std::string> names = image.channels;
-    for (const std::string& suffix : suffixes) names.push_back(name + suffix);
+    for (const std::string& suffix : channels_of_layer(name)) names.push_back(name + suffix);
     Image merged(image.width, image.height, names);
     const std::size_t n = image.channel_count(), m = names.size();
     for (std::size_t p = 0; p < data.pixels.size() / 4; ++p) {
@@ -55,9 +62,50 @@ void write_output(const std::string& path, const RenderOptions& options, const S
   write_image(path, image, options.full_float);
 }
 
+void add_stats(std::vector<StageStat>& total, const std::vector<StageStat>& stats) {
+  for (const StageStat& s : stats) {
+    const auto same = std::find_if(total.begin(), total.end(), [&](const StageStat& t) { return t.stage == s.stage; });
+    if (same == total.end()) {
+      total.push_back(s);
+      continue;
+    }
+    same->seconds += s.seconds, same->items += s.items, same->bytes = std::max(same->bytes, s.bytes);
+  }
+}
+
+// Renders the pictures that the options ask for, one camera after another, and writes each. Numbered files take every picture,
+// others the last; methods that take nothing over from picture to picture skip what nobody asked for.
+RenderResult render_pictures(const RenderOptions& options, Scene scene, const Progress& progress) {
+  const bool all =
+      scene.settings.method == Method::kTaa || std::any_of(options.outputs.begin(), options.outputs.end(), is_numbered);
+  const int pictures = makes_sequence(options) ? options.frames.value_or(kDefaultPictures) : 1;
+  const Camera start = scene.camera;
+  const auto camera_at = [&](int i) { return turned(start, options.orbit.value_or(0.f) * static_cast<float>(i)); };
+  std::vector<StageStat> stats;
+  StageStat writing{"io.write", 0, 0, 0, "files"};
+  RenderResult result;
+  Sequence sequence(scene);
+  for (int i = all ? 0 : pictures - 1; i < pictures; ++i) {
+    if (i > 0) scene.previous_camera = camera_at(i - 1);
+    scene.camera = camera_at(i);
+    result = sequence.next(scene.camera, progress);
+    add_stats(stats, result.stats);
+    const auto wrote = std::chrono::steady_clock::now();
+    for (const std::string& path : options.outputs) {
+      if (i + 1 < pictures && !is_numbered(path)) continue;
+      write_output(numbered(path, i + 1), options, scene, result, progress);
+      ++writing.items;
+    }
+    writing.seconds += seconds_since(wrote);
+  }
+  result.stats = std::move(stats);
+  result.stats.push_back(writing);
+  return result;
+}
+
 void render_verb(const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  for (const std::string& path : options.outputs) check_output(path);
+  for (const std::string& path : options.outputs) check_output(numbered(path, 1));
   std::vector<std::string> notes;
   RenderResult result;
   Scene scene;
@@ -66,11 +114,8 @@ void render_verb(const RenderOptions& options) {
     const Progress progress = line.callback();
     scene = make_scene(options, progress, notes);
     const double read_seconds = seconds_since(start);
-    result = render(scene, progress);
+    result = render_pictures(options, scene, progress);
     result.stats.insert(result.stats.begin(), {"io.read", read_seconds, 0, scene.grooms.size() + scene.meshes.size(), "files"});
-    const auto writing = std::chrono::steady_clock::now();
-    for (const std::string& path : options.outputs) write_output(path, options, scene, result, progress);
-    result.stats.push_back({"io.write", seconds_since(writing), 0, options.outputs.size(), "files"});
   }
   for (const std::string& note : notes) fmt::print(stderr, "pelage: {}: {}\n", options.input, note);
   if (options.stats) print_stats(scene, result, seconds_since(start));
@@ -78,16 +123,22 @@ void render_verb(const RenderOptions& options) {
 }
 
 void add_picture_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--method", o.method, "Anti-aliasing: msaa (all samples in one frame, shared shading) or ssaa (each shaded)")
+  verb.add_option("--method", o.method,
+                  "Anti-aliasing: msaa (samples of one frame share shading), ssaa (each is shaded), taa, fxaa, smaa or oidn")
       ->type_name("NAME");
   verb.add_option("--spp", o.samples, "Samples per pixel; msaa: 1, 2, 4, 8 or 16; ssaa: any number")
       ->check(CLI::Range(1, 4096));
+  verb.add_option("--frames", o.frames,
+                  "Pictures of a sequence (an output like out.####.exr, or --orbit); else frames that taa blends")
+      ->check(CLI::Range(1, 4096));
+  verb.add_option("--orbit", o.orbit, "Degrees that the camera goes around the target from picture to picture")
+      ->check(CLI::Range(-360.0, 360.0));
   verb.add_option("--view", o.view, "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo or motion")
       ->type_name("NAME");
   verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic")->type_name("NAME");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')
-      ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw"}));
+      ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw", "motion"}));
   verb.add_flag("--float", o.full_float, "EXR with 32 bits a channel instead of 16");
   verb.add_option("--subdivisions", o.subdivisions, "Segments per span; 0 chooses")->check(CLI::Range(0, 64));
   verb.add_flag("--no-dual-scattering", o.no_dual_scattering, "Single scattering only");
@@ -95,6 +146,10 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
 }
 
 }  // namespace
+
+bool makes_sequence(const RenderOptions& options) {
+  return options.orbit || std::any_of(options.outputs.begin(), options.outputs.end(), is_numbered);
+}
 
 void add_render(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("render", "Render a groom or a scene file");
@@ -115,6 +170,7 @@ void add_render(CLI::App& app) {
       "  pelage render hair.tfx --mesh head.obj -o hair.png\n"
       "  pelage render hair.tfx -o hair.exr --size 1920x1080 --spp 16 --hair blond --stats\n"
       "  pelage render hair.tfx -o reference.exr --method ssaa --spp 64\n"
+      "  pelage render hair.tfx -o turn.####.exr --method taa --orbit 0.5 --frames 48 --layers motion\n"
       "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage");
   verb->callback([o] {
     if (o->schema) return fmt::print("{}", io::scene_schema());

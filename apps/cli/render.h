@@ -21,8 +21,8 @@ struct RenderOptions {
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
   std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment;
-  std::optional<int> samples, subdivisions, opacity_map_size;
-  std::optional<float> exposure, fov, turn, width_scale, environment_rotation;
+  std::optional<int> samples, frames, subdivisions, opacity_map_size;
+  std::optional<float> exposure, fov, turn, orbit, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;
@@ -34,6 +34,12 @@ void add_scene_options(CLI::App& verb, RenderOptions& options);
 
 /// Reads the groom or scene file and applies the options to it. What the reader assumed is told in `notes`.
 Scene make_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes);
+
+/// Whether the options ask for several pictures: a camera that goes around, or a file name with a place for a number.
+bool makes_sequence(const RenderOptions& options);
+
+/// The eye goes around the target about the vertical axis, counter-clockwise from above.
+Camera turned(Camera camera, float degrees);
 
 /// `render --stats` and `--json`.
 void print_stats(const Scene& scene, const RenderResult& result, double seconds);

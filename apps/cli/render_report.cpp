@@ -37,10 +37,10 @@ double bytes_per_point(const Scene& scene, const RenderResult& result) {
 }  // namespace
 
 void print_stats(const Scene& scene, const RenderResult& result, double seconds) {
-  fmt::print("{:<12} {:>10} {:>12} {:>14}  {}\n", "stage", "ms", "MiB", "items", "unit");
+  fmt::print("{:<13} {:>10} {:>12} {:>14}  {}\n", "stage", "ms", "MiB", "items", "unit");
   for (const StageStat& s : result.stats)
-    fmt::print("{:<12} {:>10.1f} {:>12.1f} {:>14}  {}\n", s.stage, 1000 * s.seconds, mebibytes(s.bytes), s.items, s.unit);
-  fmt::print("{:<12} {:>10.1f} {:>12.1f}                 peak of the process; {} threads, {}\n", "total", 1000 * seconds,
+    fmt::print("{:<13} {:>10.1f} {:>12.1f} {:>14}  {}\n", s.stage, 1000 * s.seconds, mebibytes(s.bytes), s.items, s.unit);
+  fmt::print("{:<13} {:>10.1f} {:>12.1f}                 peak of the process; {} threads, {}\n", "total", 1000 * seconds,
              mebibytes(peak_resident_bytes()), thread_count(), active_isa());
   if (control_points(scene))
     fmt::print("{:.1f} bytes per control point besides the G-buffer\n", bytes_per_point(scene, result));

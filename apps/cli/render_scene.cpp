@@ -94,7 +94,15 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
     if (s.width < 1 || s.height < 1 || s.width > 16384 || s.height > 16384)
       throw UsageError("--size", *o.size, "out of range", "from 1x1 to 16384x16384");
   }
-  if (o.method) s.method = by_name<Method>("--method", *o.method, {{"msaa", Method::kMsaa}, {"ssaa", Method::kSsaa}});
+  if (o.method)
+    s.method = by_name<Method>("--method", *o.method,
+                               {{"msaa", Method::kMsaa},
+                                {"ssaa", Method::kSsaa},
+                                {"taa", Method::kTaa},
+                                {"fxaa", Method::kFxaa},
+                                {"smaa", Method::kSmaa},
+                                {"oidn", Method::kOidn}});
+  if (o.frames && !makes_sequence(o)) s.frames = *o.frames;
   if (o.samples) s.samples = *o.samples;
   if (s.method == Method::kMsaa && !is_sample_count(s.samples))
     throw UsageError("--spp", std::to_string(s.samples), "no pattern of msaa", "use 1, 2, 4, 8 or 16, or --method ssaa");
@@ -145,13 +153,6 @@ void apply_material(const RenderOptions& o, HairMaterial& m) {
   if (!o.color.empty()) m.color = vector(o.color), m.color_source = Source::kRgb;
 }
 
-// The eye goes around the target about the vertical axis.
-void turn(Camera& camera, float degrees) {
-  const float c = std::cos(degrees * kDegree), s = std::sin(degrees * kDegree);
-  const Vec3 d = camera.eye - camera.target;
-  camera.eye = camera.target + Vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
-}
-
 void apply_camera(const RenderOptions& o, Camera& camera) {
   if (o.fov) {
     // Keeps the subject's size: a wider angle from nearer.
@@ -162,7 +163,7 @@ void apply_camera(const RenderOptions& o, Camera& camera) {
   if (o.orthographic) camera.projection = Camera::Projection::kOrthographic;
   if (!o.eye.empty()) camera.eye = vector(o.eye);
   if (!o.target.empty()) camera.target = vector(o.target);
-  if (o.turn) turn(camera, *o.turn);
+  if (o.turn) camera = turned(camera, *o.turn);
 }
 
 void apply_environment(const RenderOptions& o, Environment& environment) {
@@ -176,6 +177,13 @@ void apply_environment(const RenderOptions& o, Environment& environment) {
 }
 
 }  // namespace
+
+Camera turned(Camera camera, float degrees) {
+  const float c = std::cos(degrees * kDegree), s = std::sin(degrees * kDegree);
+  const Vec3 d = camera.eye - camera.target;
+  camera.eye = camera.target + Vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
+  return camera;
+}
 
 Scene make_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes) {
   Scene scene;

@@ -6,6 +6,7 @@
 #include <pelage/scene.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,25 @@ struct RenderResult {
 /// Renders `scene.settings.view` of `scene`. Throws Error on settings out of range. The result has the same bits for
 /// any number of threads (see set_thread_count() in <pelage/runtime.h>).
 RenderResult render(const Scene& scene, const Progress& progress = {});
+
+/// Pictures of one scene from a camera that may move from picture to picture. Light maps and the trees of the meshes,
+/// which no camera changes, are made once, and Method::kTaa goes on from picture to picture: the first is that of a camera
+/// that stood still for `settings.frames` frames, those after it take one frame each.
+class Sequence {
+ public:
+  /// Throws Error on settings out of range. The scene's camera is not read, its previous_camera for the first picture.
+  explicit Sequence(Scene scene);
+  Sequence(Sequence&&) noexcept;
+  Sequence& operator=(Sequence&&) noexcept;
+  ~Sequence();
+
+  /// The next picture. Without temporal methods it is what render() makes of the scene with this camera.
+  RenderResult next(const Camera& camera, const Progress& progress = {});
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// `linear` (R, G, B, A; premultiplied) tone-mapped and sRGB-encoded, 0…1. Color is un-premultiplied for the curve and
 /// stays straight, as PNG wants it; alpha is copied. O(pixels).

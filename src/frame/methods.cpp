@@ -1,11 +1,20 @@
 #include "frame/methods.h"
 
-#include <pelage/error.h>
+#include <pelage/render.h>
 
 #include <array>
+#include <cmath>
 #include <span>
+#include <utility>
 
+#include "composite/composite.h"
+#include "composite/debug_view.h"
 #include "filter/frame_mean.h"
+#include "filter/fxaa.h"
+#include "filter/oidn.h"
+#include "filter/smaa.h"
+#include "filter/taa.h"
+#include "frame/camera_view.h"
 #include "frame/sample_positions.h"
 
 namespace pelage {
@@ -13,11 +22,27 @@ namespace {
 
 constexpr std::array kPixelCenter{Vec2(0.5f, 0.5f)};
 
-/// The view whose pixel centers lie at `position` of the pixels of `view`.
-CameraView jittered(CameraView view, Vec2 position) {
-  view.center_x += 0.5f - position.x;
-  view.center_y += 0.5f - position.y;
-  return view;
+/// The same frame with pixel centers at `position` of the pixels.
+FrameInputs jittered(FrameInputs inputs, Vec2 position) {
+  inputs.view.center_x += 0.5f - position.x;
+  inputs.view.center_y += 0.5f - position.y;
+  return inputs;
+}
+
+/// Runs `work`, which works on all pixels of `image`, as stage `name`.
+template <class Work>
+void run_on(const Image& image, const char* name, Stages& stages, const Work& work) {
+  const std::uint64_t pixels = image.pixels.size() / 4;
+  stages.run(name, "pixels", [&](const Progress&) {
+    work();
+    return StageWork{pixels, pixels * 4 * sizeof(float)};
+  });
+}
+
+Beauty displayed(Image linear, ToneMap tone_map, Stages& stages) {
+  Beauty beauty{std::move(linear), {}};
+  run_on(beauty.linear, "display", stages, [&] { beauty.display = make_display(beauty.linear, tone_map); });
+  return beauty;
 }
 
 /// All samples of a pixel from one frame; those that see the same segment share its shade.
@@ -27,33 +52,94 @@ Image multisampled(const FrameInputs& inputs, Stages& stages) {
 }
 
 /// A frame for every sample, each shaded where it is.
-Image supersampled(FrameInputs& inputs, Stages& stages) {
-  const CameraView still = inputs.view;
+Image supersampled(const FrameInputs& inputs, Stages& stages) {
   const int samples = inputs.scene.settings.samples;
   FrameMean mean;
   for (const Vec2 position : pixel_sample_positions(samples)) {
     stages.set_pass(mean.count(), samples);
-    inputs.view = jittered(still, position);
-    Image frame = render_frame(inputs, kPixelCenter, stages);
-    stages.run("filter.ssaa", "pixels", [&](const Progress&) {
-      const std::size_t values = frame.pixels.size();
-      mean.add(std::move(frame));
-      return StageWork{values / 4, values * sizeof(float)};
-    });
+    Image frame = render_frame(jittered(inputs, position), kPixelCenter, stages);
+    run_on(frame, "filter.ssaa", stages, [&] { mean.add(std::move(frame)); });
   }
   stages.set_pass(0, 1);
-  inputs.view = still;
   return mean.take();
+}
+
+/// One frame more for what the history has, or as many as a first picture takes.
+Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages) {
+  const int frames = state.history ? 1 : inputs.scene.settings.frames;
+  if (!state.history) state.history = std::make_unique<TaaHistory>();
+  for (int i = 0; i < frames; ++i) {
+    stages.set_pass(i, frames);
+    const Vec2 position = jitter_position(state.next_frame++);
+    TaaFrame frame{{}, {}, inputs.view, position};
+    frame.color = render_frame(jittered(inputs, position), kPixelCenter, stages, &frame.depth);
+    run_on(frame.color, "filter.taa", stages, [&] { state.history->add(std::move(frame)); });
+  }
+  stages.set_pass(0, 1);
+  return state.history->picture();
+}
+
+/// Edges are found in what a display shows, and smoothed there and in the linear picture.
+Beauty fast_approximate(const FrameInputs& inputs, Stages& stages) {
+  Beauty b = displayed(render_frame(inputs, kPixelCenter, stages), inputs.scene.settings.tone_map, stages);
+  run_on(b.linear, "filter.fxaa", stages, [&] {
+    const Buffer<Vec2> offsets = fxaa_offsets(b.display);
+    b = {resample(b.linear, offsets, AlphaKind::kPremultiplied), resample(b.display, offsets, AlphaKind::kStraight)};
+  });
+  return b;
+}
+
+Beauty morphological(const FrameInputs& inputs, Stages& stages) {
+  Beauty b = displayed(render_frame(inputs, kPixelCenter, stages), inputs.scene.settings.tone_map, stages);
+  run_on(b.linear, "filter.smaa", stages, [&] {
+    const Buffer<SmaaShares> shares = smaa_shares(b.display);
+    b = {smaa_blend(b.linear, shares, AlphaKind::kPremultiplied), smaa_blend(b.display, shares, AlphaKind::kStraight)};
+  });
+  return b;
+}
+
+/// The normal of a strand that faces the eye the most: across its tangent. 0 where no strand is.
+Image facing_normals(const Image& tangents, const CameraView& view) {
+  Image normals = tangents;
+  for (std::size_t i = 0; i < normals.pixels.size(); i += 4) {
+    float* n = normals.pixels.data() + i;
+    if (!(n[3] > 0)) continue;
+    const std::size_t pixel = i / 4, width = static_cast<std::size_t>(view.width);
+    const Ray ray = camera_ray(view, static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f);
+    const Vec3 to_eye = normalize(-ray.direction), tangent(n[0], n[1], n[2]);
+    const Vec3 normal = normalize(to_eye - tangent * dot(to_eye, tangent));
+    n[0] = normal.x, n[1] = normal.y, n[2] = normal.z;
+  }
+  return normals;
+}
+
+Image denoised(const FrameInputs& inputs, Stages& stages) {
+  Image albedo = render_debug_view(inputs, View::kAlbedo, stages).data;
+  Image normals = facing_normals(render_debug_view(inputs, View::kTangent, stages).data, inputs.view);
+  Image linear = render_frame(inputs, kPixelCenter, stages);
+  run_on(linear, "filter.oidn", stages,
+         [&] { linear = oidn_denoise(std::move(linear), std::move(albedo), std::move(normals)); });
+  return linear;
 }
 
 }  // namespace
 
-Image render_beauty(FrameInputs& inputs, Stages& stages) {
+MethodState::MethodState() = default;
+MethodState::~MethodState() = default;
+MethodState::MethodState(MethodState&&) noexcept = default;
+MethodState& MethodState::operator=(MethodState&&) noexcept = default;
+
+Beauty render_beauty(const FrameInputs& inputs, MethodState& state, Stages& stages) {
+  const ToneMap tone_map = inputs.scene.settings.tone_map;
   switch (inputs.scene.settings.method) {
-    case Method::kMsaa: return multisampled(inputs, stages);
-    case Method::kSsaa: return supersampled(inputs, stages);
-    default: throw Error("settings", "method", "not in this build", "use msaa or ssaa");
+    case Method::kMsaa: break;
+    case Method::kSsaa: return displayed(supersampled(inputs, stages), tone_map, stages);
+    case Method::kTaa: return displayed(temporal(inputs, state, stages), tone_map, stages);
+    case Method::kFxaa: return fast_approximate(inputs, stages);
+    case Method::kSmaa: return morphological(inputs, stages);
+    case Method::kOidn: return displayed(denoised(inputs, stages), tone_map, stages);
   }
+  return displayed(multisampled(inputs, stages), tone_map, stages);
 }
 
 }  // namespace pelage

@@ -98,6 +98,103 @@ TEST(Ssaa, ComesCloserWithMoreSamples) {
   }
 }
 
+// Every yardstick comes closer to the supersampled picture than the one sample that it starts from.
+TEST(Methods, SmoothTheirOneSample) {
+  Scene scene = hairy_scene();
+  add_tile(scene);
+  const Image reference = linear_of(scene, Method::kSsaa, 64), one = linear_of(scene, Method::kSsaa, 1);
+  const double before = rms(one, reference);
+  EXPECT_LT(rms(linear_of(scene, Method::kFxaa, 1), reference), 0.85 * before);
+  EXPECT_LT(rms(linear_of(scene, Method::kSmaa, 1), reference), 0.95 * before);
+  EXPECT_LT(rms(linear_of(scene, Method::kTaa, 1), reference), 0.5 * before);
+  EXPECT_LT(rms(linear_of(scene, Method::kMsaa, 8), reference), 0.4 * before);
+}
+
+// With sixteen frames TAA sees what sixteen samples see, but for the colors that it clips.
+TEST(Taa, OfAStillCameraComesNearSupersampling) {
+  Scene scene = hairy_scene();
+  const Image reference = linear_of(scene, Method::kSsaa, 64);
+  double before = INFINITY;
+  for (const int frames : {1, 4, 16}) {
+    scene.settings.frames = frames;
+    const double now = rms(linear_of(scene, Method::kTaa, 1), reference);
+    EXPECT_LT(now, 0.8 * before) << frames;
+    before = now;
+  }
+  EXPECT_LT(before, 2.5 * rms(linear_of(scene, Method::kSsaa, 16), reference));
+}
+
+TEST(Sequence, StartsAsARenderedPicture) {
+  Scene scene = hairy_scene();
+  for (const Method method : {Method::kMsaa, Method::kTaa, Method::kSmaa}) {
+    scene.settings.method = method;
+    const RenderResult alone = render(scene), first = Sequence(scene).next(scene.camera);
+    EXPECT_EQ(first.linear.pixels, alone.linear.pixels);
+    EXPECT_EQ(first.display.pixels, alone.display.pixels);
+  }
+}
+
+TEST(Sequence, MakesEveryPictureOfItsCameraAndItsLightOnce) {
+  const Scene scene = hairy_scene();
+  Sequence sequence(scene);
+  for (int i = 0; i < 3; ++i) {
+    Scene moved = scene;
+    moved.camera.eye.x += 0.01f * static_cast<float>(i);
+    const RenderResult result = sequence.next(moved.camera);
+    EXPECT_EQ(result.linear.pixels, render(moved).linear.pixels) << i;
+    int lights = 0;
+    for (const StageStat& s : result.stats) lights += s.stage == "light";
+    EXPECT_EQ(lights, i == 0) << i;
+  }
+}
+
+// A camera that creeps on: the picture stays near that of a still one, and nearer to the reference than without history.
+TEST(Sequence, TaaFollowsTheCamera) {
+  Scene scene = hairy_scene();
+  scene.settings.method = Method::kTaa;
+  Sequence sequence(scene);
+  Image last;
+  for (int i = 0; i < 12; ++i) {
+    scene.camera.eye.x += 2e-4f;
+    scene.camera.target.x += 2e-4f;
+    last = sequence.next(scene.camera).linear;
+  }
+  const Image reference = linear_of(scene, Method::kSsaa, 64);
+  EXPECT_LT(rms(last, reference), 0.7 * rms(linear_of(scene, Method::kSsaa, 1), reference));
+}
+
+TEST(Sequence, TellsTheMotionOfItsCamera) {
+  Scene scene = hairy_scene();
+  scene.settings.view = View::kMotion;
+  Sequence sequence(scene);
+  const Image still = sequence.next(scene.camera).linear;
+  Camera moved = scene.camera;
+  moved.eye.x += 0.002f, moved.target.x += 0.002f;
+  const Image motion = sequence.next(moved).linear;
+  int things = 0;
+  for (std::size_t i = 0; i < still.pixels.size(); i += 4) {
+    ASSERT_EQ(still.pixels[i], 0);
+    if (motion.pixels[i + 3] == 0) continue;
+    ++things;
+    EXPECT_GT(motion.pixels[i], 0) << "what is seen now was further right";
+  }
+  EXPECT_GT(things, 50);
+}
+
+TEST(Methods, DenoisingNeedsItsLibrary) {
+#ifdef PELAGE_HAS_OIDN
+  GTEST_SKIP() << "this build has Open Image Denoise";
+#endif
+  Scene scene = hairy_scene(8, 8);
+  scene.settings.method = Method::kOidn;
+  try {
+    render(scene);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("openimagedenoise.org"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Methods, SettingsThatDoNotGoTogetherAreErrors) {
   Scene scene = hairy_scene(8, 8);
   scene.settings.samples = 3;
@@ -108,6 +205,9 @@ TEST(Methods, SettingsThatDoNotGoTogetherAreErrors) {
   EXPECT_THROW(render(scene), Error);
   scene.settings.alpha = AlphaSource::kSamples;
   scene.settings.samples = 5000;
+  EXPECT_THROW(render(scene), Error);
+  scene.settings.samples = 8;
+  scene.settings.frames = 0;
   EXPECT_THROW(render(scene), Error);
 }
 
@@ -134,7 +234,8 @@ TEST_P(EveryMethod, HasTheSameBitsForAnyThreadsAndInstructionSet) {
   set_thread_count(0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::Values(Method::kMsaa, Method::kSsaa));
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
+                         testing::Values(Method::kMsaa, Method::kSsaa, Method::kTaa, Method::kFxaa, Method::kSmaa));
 
 }  // namespace
 }  // namespace pelage

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "assemble/assemble.h"
@@ -11,6 +13,7 @@
 #include "composite/debug_view.h"
 #include "core/mesh_tracer.h"
 #include "filter/motion.h"
+#include "filter/oidn.h"
 #include "frame/camera_view.h"
 #include "frame/methods.h"
 #include "frame/one_frame.h"
@@ -33,6 +36,7 @@ void check_settings(const RenderSettings& s) {
   require(s.subdivisions >= 0 && s.subdivisions <= 64, "subdivisions", s.subdivisions, "0…64");
   require(s.opacity_map_size >= 64 && s.opacity_map_size <= 4096, "opacity_map_size", s.opacity_map_size, "64…4096");
   require(s.exposure >= -100 && s.exposure <= 100, "exposure", s.exposure, "-100…100");
+  if (s.method == Method::kOidn) require_oidn();
   if (s.method != Method::kMsaa && s.alpha == AlphaSource::kAnalytic)
     throw Error("settings", "alpha", "analytic opacity goes with method msaa alone", "use samples");
 }
@@ -64,36 +68,54 @@ DebugView render_motion_view(const FrameInputs& inputs, Stages& stages) {
 
 }  // namespace
 
-RenderResult render(const Scene& scene, const Progress& progress) {
+struct Sequence::State {
+  Scene scene;
+  MeshTracer meshes;
+  std::optional<LightRig> rig;
+  MethodState method;
+
+  explicit State(Scene s) : scene(std::move(s)), meshes(scene.meshes) {}
+};
+
+Sequence::Sequence(Scene scene) {
+  check_settings(scene.settings);
+  groom_work(scene);
+  state_ = std::make_unique<State>(std::move(scene));
+}
+Sequence::~Sequence() = default;
+Sequence::Sequence(Sequence&&) noexcept = default;
+Sequence& Sequence::operator=(Sequence&&) noexcept = default;
+
+RenderResult Sequence::next(const Camera& camera, const Progress& progress) {
+  Scene& scene = state_->scene;
   const RenderSettings& settings = scene.settings;
-  check_settings(settings);
+  scene.camera = camera;
   Stages stages(progress);
   stages.note("groom", "points", groom_work(scene));
-  const CameraView view = make_camera_view(scene.camera, settings.width, settings.height);
-  const MeshTracer meshes(scene.meshes);
-  LightRig rig;
-
-  RenderResult result;
-  if (settings.view == View::kBeauty) {
+  const CameraView view = make_camera_view(camera, settings.width, settings.height);
+  const bool beauty = settings.view == View::kBeauty;
+  if (beauty && !state_->rig)
     stages.run("light", "maps", [&](const Progress&) {
-      rig = prepare_lights(scene, meshes);
-      return StageWork{rig.lights.size(), resident_bytes(rig)};
+      state_->rig = prepare_lights(scene, state_->meshes);
+      return StageWork{state_->rig->lights.size(), resident_bytes(*state_->rig)};
     });
-    FrameInputs inputs{scene, meshes, rig, view, number_segments(scene, view)};
-    result.linear = render_beauty(inputs, stages);
-    stages.run("display", "pixels", [&](const Progress&) {
-      result.display = make_display(result.linear, settings.tone_map);
-      return StageWork{result.display.pixels.size() / 4, result.display.pixels.size() * sizeof(float)};
-    });
+
+  const LightRig dark;
+  const FrameInputs inputs{scene, state_->meshes, beauty ? *state_->rig : dark, view, number_segments(scene, view)};
+  RenderResult result;
+  if (beauty) {
+    Beauty picture = render_beauty(inputs, state_->method, stages);
+    result.linear = std::move(picture.linear), result.display = std::move(picture.display);
   } else {
-    const FrameInputs inputs{scene, meshes, rig, view, number_segments(scene, view)};
     DebugView debug =
         settings.view == View::kMotion ? render_motion_view(inputs, stages) : render_debug_view(inputs, settings.view, stages);
-    result.linear = std::move(debug.data);
-    result.display = std::move(debug.display);
+    result.linear = std::move(debug.data), result.display = std::move(debug.display);
   }
+  scene.previous_camera = camera;
   result.stats = stages.take();
   return result;
 }
+
+RenderResult render(const Scene& scene, const Progress& progress) { return Sequence(scene).next(scene.camera, progress); }
 
 }  // namespace pelage

@@ -11,7 +11,7 @@
 
 #include "io/atomic_file.h"
 #include "io/byte_source.h"
-#include "io/srgb.h"
+#include "core/srgb.h"
 #include "io/file_kind.h"
 #include "io/image_png.h"
 
@@ -28,7 +28,7 @@ void linearize_colors(Image& image) {
   const std::size_t n = image.channel_count();
   for (std::size_t c = 0; c < n; ++c) {
     if (is_alpha(image.channels[c])) continue;
-    for (std::size_t i = c; i < image.pixels.size(); i += n) image.pixels[i] = io::srgb_to_linear(image.pixels[i]);
+    for (std::size_t i = c; i < image.pixels.size(); i += n) image.pixels[i] = srgb_to_linear(image.pixels[i]);
   }
 }
 

@@ -193,7 +193,8 @@ const Fields<RenderSettings>& settings_fields() {
   static const Names<View> views{{"beauty", View::kBeauty},     {"strand-id", View::kStrandId}, {"u", View::kU},
                                  {"tangent", View::kTangent},   {"depth", View::kDepth},        {"coverage", View::kCoverage},
                                  {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo},      {"motion", View::kMotion}};
-  static const Names<Method> methods{{"msaa", Method::kMsaa}, {"ssaa", Method::kSsaa}};
+  static const Names<Method> methods{{"msaa", Method::kMsaa}, {"ssaa", Method::kSsaa}, {"taa", Method::kTaa},
+                                     {"fxaa", Method::kFxaa}, {"smaa", Method::kSmaa}, {"oidn", Method::kOidn}};
   static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};
   static const Fields<S> table{
       integer_field("width", "Pixels", &S::width, 1, 16384),

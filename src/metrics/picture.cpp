@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "io/byte_source.h"
 #include "io/file_kind.h"
-#include "io/srgb.h"
+#include "core/srgb.h"
 #include "metrics/pair.h"
 
 namespace pelage {
@@ -93,7 +93,7 @@ Image displayed(const Colors& colors, ToneMap tone_map) {
 Image over_black(Image rgb, const std::vector<float>& alpha) {
   if (alpha.empty()) return rgb;
   for_each_color(rgb, [&](std::size_t p, float x) {
-    return alpha[p] == 1 ? x : io::linear_to_srgb(io::srgb_to_linear(x) * std::clamp(alpha[p], 0.f, 1.f));
+    return alpha[p] == 1 ? x : linear_to_srgb(srgb_to_linear(x) * std::clamp(alpha[p], 0.f, 1.f));
   });
   return rgb;
 }
@@ -107,7 +107,7 @@ std::optional<std::size_t> channel(const Image& image, const std::string& name) 
 }
 
 Image decode_display(Image rgb) {
-  for_each_color(rgb, [](std::size_t, float x) { return io::srgb_to_linear(x); });
+  for_each_color(rgb, [](std::size_t, float x) { return srgb_to_linear(x); });
   return rgb;
 }
 

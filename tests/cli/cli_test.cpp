@@ -123,6 +123,41 @@ TEST_F(Cli, WritesEveryKindOfPicture) {
   EXPECT_EQ(outcome.out, "") << "quiet when all is well";
 }
 
+TEST_F(Cli, RendersByEveryMethod) {
+  make_hair();
+  for (const char* method : {"msaa", "ssaa --spp 5", "taa --frames 3", "fxaa", "smaa"}) {
+    const Outcome outcome = run(std::string("render hair.pelage --size 40x30 -o a.png --stats --method ") + method);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string name(method, 4);
+    if (name != "msaa") {
+      EXPECT_THAT(outcome.out, HasSubstr("filter." + name.substr(0, name.find(' '))));
+    }
+  }
+}
+
+TEST_F(Cli, DenoisingWithoutItsLibrarySaysHowToGetIt) {
+  make_hair();
+  const Outcome outcome = run("render hair.pelage --size 40x30 -o a.png --method oidn");
+  if (outcome.status == 0) GTEST_SKIP() << "this build has Open Image Denoise";
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("openimagedenoise.org"));
+  EXPECT_FALSE(fs::exists(in("a.png")));
+}
+
+TEST_F(Cli, WritesSequences) {
+  make_hair();
+  const Outcome taa =
+      run("render hair.pelage --size 40x30 -o a.###.exr -o last.png --method taa --orbit 2 --frames 3 --layers motion");
+  EXPECT_EQ(taa.status, 0) << taa.err;
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.001.exr", "a.002.exr", "a.003.exr", "last.png"));
+  EXPECT_THAT(slurp(in("a.002.exr")), HasSubstr("motion.X"));
+  EXPECT_NE(slurp(in("a.001.exr")), slurp(in("a.002.exr")));
+  // The last picture of an orbit is the picture of the turned camera, where nothing is taken over from the others.
+  EXPECT_EQ(run("render hair.pelage --size 40x30 --view strand-id -o b.png --orbit 2 --frames 3").status, 0);
+  EXPECT_EQ(run("render hair.pelage --size 40x30 --view strand-id -o c.png --turn 4").status, 0);
+  EXPECT_EQ(slurp(in("b.png")), slurp(in("c.png")));
+}
+
 TEST_F(Cli, JsonIsTheSameForAnyThreads) {
   make_hair();
   std::string hash, picture;
