@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -95,12 +96,18 @@ Scene quality_scene(const std::string& groom, Method method, int samples) {
   return scene;
 }
 
-Picture display_of(const Scene& scene) { return {render(scene).display, Encoding::kDisplay}; }
+/// What a display shows of that groom by that method, rendered once in a run.
+std::shared_ptr<const Picture> picture_by(const std::string& groom, const NamedMethod& m) {
+  static std::map<std::string, std::shared_ptr<const Picture>> made;
+  std::shared_ptr<const Picture>& picture = made[groom + "." + m.name];
+  if (!picture)
+    picture = std::make_shared<Picture>(Picture{render(quality_scene(groom, m.method, m.samples)).display, Encoding::kDisplay});
+  return picture;
+}
 
-/// A metric of a method's picture, as a display shows it, against 64 samples that are all shaded.
+/// A metric of a method's picture against 64 samples that are all shaded.
 Workload quality_workload(const std::string& groom, const NamedMethod& m, const std::string& metric) {
-  const auto reference = std::make_shared<const Picture>(display_of(quality_scene(groom, Method::kSsaa, 64)));
-  const auto test = std::make_shared<const Picture>(display_of(quality_scene(groom, m.method, m.samples)));
+  const auto reference = picture_by(groom, {"ssaa64", Method::kSsaa, 64}), test = picture_by(groom, m);
   const auto against_reference = [reference, metric](const Picture& picture) {
     return compare_images(picture, *reference, {.metrics = {metric}}).value(metric);
   };
