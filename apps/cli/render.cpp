@@ -84,7 +84,7 @@ RenderResult render_pictures(const RenderOptions& options, Scene scene, const Pr
   std::vector<StageStat> stats;
   StageStat writing{"io.write", 0, 0, 0, "files"};
   RenderResult result;
-  Sequence sequence(scene);
+  PictureSequence sequence(scene);
   for (int i = all ? 0 : pictures - 1; i < pictures; ++i) {
     if (i > 0) scene.previous_camera = camera_at(i - 1);
     scene.camera = camera_at(i);

@@ -34,13 +34,13 @@ RenderResult render(const Scene& scene, const Progress& progress = {});
 /// Pictures of one scene from a camera that may move from picture to picture. Light maps and the trees of the meshes,
 /// which no camera changes, are made once, and Method::kTaa goes on from picture to picture: the first is that of a camera
 /// that stood still for `settings.frames` frames, those after it take one frame each.
-class Sequence {
+class PictureSequence {
  public:
   /// Throws Error on settings out of range. The scene's camera is not read, its previous_camera for the first picture.
-  explicit Sequence(Scene scene);
-  Sequence(Sequence&&) noexcept;
-  Sequence& operator=(Sequence&&) noexcept;
-  ~Sequence();
+  explicit PictureSequence(Scene scene);
+  PictureSequence(PictureSequence&&) noexcept;
+  PictureSequence& operator=(PictureSequence&&) noexcept;
+  ~PictureSequence();
 
   /// The next picture. Without temporal methods it is what render() makes of the scene with this camera.
   RenderResult next(const Camera& camera, const Progress& progress = {});

@@ -128,7 +128,7 @@ TEST(Sequence, StartsAsARenderedPicture) {
   Scene scene = hairy_scene();
   for (const Method method : {Method::kMsaa, Method::kTaa, Method::kSmaa}) {
     scene.settings.method = method;
-    const RenderResult alone = render(scene), first = Sequence(scene).next(scene.camera);
+    const RenderResult alone = render(scene), first = PictureSequence(scene).next(scene.camera);
     EXPECT_EQ(first.linear.pixels, alone.linear.pixels);
     EXPECT_EQ(first.display.pixels, alone.display.pixels);
   }
@@ -136,7 +136,7 @@ TEST(Sequence, StartsAsARenderedPicture) {
 
 TEST(Sequence, MakesEveryPictureOfItsCameraAndItsLightOnce) {
   const Scene scene = hairy_scene();
-  Sequence sequence(scene);
+  PictureSequence sequence(scene);
   for (int i = 0; i < 3; ++i) {
     Scene moved = scene;
     moved.camera.eye.x += 0.01f * static_cast<float>(i);
@@ -152,7 +152,7 @@ TEST(Sequence, MakesEveryPictureOfItsCameraAndItsLightOnce) {
 TEST(Sequence, TaaFollowsTheCamera) {
   Scene scene = hairy_scene();
   scene.settings.method = Method::kTaa;
-  Sequence sequence(scene);
+  PictureSequence sequence(scene);
   Image last;
   for (int i = 0; i < 12; ++i) {
     scene.camera.eye.x += 2e-4f;
@@ -166,7 +166,7 @@ TEST(Sequence, TaaFollowsTheCamera) {
 TEST(Sequence, TellsTheMotionOfItsCamera) {
   Scene scene = hairy_scene();
   scene.settings.view = View::kMotion;
-  Sequence sequence(scene);
+  PictureSequence sequence(scene);
   const Image still = sequence.next(scene.camera).linear;
   Camera moved = scene.camera;
   moved.eye.x += 0.002f, moved.target.x += 0.002f;

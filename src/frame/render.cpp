@@ -68,7 +68,7 @@ DebugView render_motion_view(const FrameInputs& inputs, Stages& stages) {
 
 }  // namespace
 
-struct Sequence::State {
+struct PictureSequence::State {
   Scene scene;
   MeshTracer meshes;
   std::optional<LightRig> rig;
@@ -77,16 +77,16 @@ struct Sequence::State {
   explicit State(Scene s) : scene(std::move(s)), meshes(scene.meshes) {}
 };
 
-Sequence::Sequence(Scene scene) {
+PictureSequence::PictureSequence(Scene scene) {
   check_settings(scene.settings);
   groom_work(scene);
   state_ = std::make_unique<State>(std::move(scene));
 }
-Sequence::~Sequence() = default;
-Sequence::Sequence(Sequence&&) noexcept = default;
-Sequence& Sequence::operator=(Sequence&&) noexcept = default;
+PictureSequence::~PictureSequence() = default;
+PictureSequence::PictureSequence(PictureSequence&&) noexcept = default;
+PictureSequence& PictureSequence::operator=(PictureSequence&&) noexcept = default;
 
-RenderResult Sequence::next(const Camera& camera, const Progress& progress) {
+RenderResult PictureSequence::next(const Camera& camera, const Progress& progress) {
   Scene& scene = state_->scene;
   const RenderSettings& settings = scene.settings;
   scene.camera = camera;
@@ -116,6 +116,8 @@ RenderResult Sequence::next(const Camera& camera, const Progress& progress) {
   return result;
 }
 
-RenderResult render(const Scene& scene, const Progress& progress) { return Sequence(scene).next(scene.camera, progress); }
+RenderResult render(const Scene& scene, const Progress& progress) {
+  return PictureSequence(scene).next(scene.camera, progress);
+}
 
 }  // namespace pelage
