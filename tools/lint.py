@@ -13,7 +13,7 @@ import sys
 
 SKIPPED_FOLDERS = re.compile(r"^(\.git|\.cache|build.*|out|__pycache__)$")
 CODE = (".h", ".cpp", ".inc", ".comp", ".glsl")
-TEXT = CODE + (".py", ".sh", ".cmake", ".txt", ".md", ".json", ".bib", ".in")
+TEXT = CODE + (".py", ".sh", ".cmake", ".txt", ".md", ".json", ".bib", ".in", ".html", ".css", ".js")
 
 # ---------------------------------------------------------------------------------------------------------------------
 # Layers: who may include whom. core ← kernel ← stages ← frame ← apps. The headers of frame/ declare what flows between
@@ -27,6 +27,7 @@ LAYERS = {
     "frame": {"core", "kernel", "frame"} | STAGES,
     "metrics": {"core", "io", "metrics"},
     "reference": {"core", "kernel", "io", "frame", "reference"},
+    "report": {"core", "io", "report"},
     "backend": {"core", "kernel", "frame", "backend"},
 }
 FRAME_HEADERS = {"core", "kernel", "frame"}

@@ -135,14 +135,15 @@ std::string plain_message(const std::string& what) {
 
 }  // namespace
 
-JsonDocument::JsonDocument(std::string name, std::vector<char> text) : name_(std::move(name)), text_(std::move(text)) {
+JsonDocument::JsonDocument(std::string name, std::vector<char> text, const std::string& remedy)
+    : name_(std::move(name)), text_(std::move(text)) {
   const Walk walk(text_, "");
   if (const auto& deep = walk.too_deep())
     throw Error(name_, fmt::format("line {}", deep->line), "objects and arrays nested too deep", "a scene file is flat");
   try {
     root_ = json::parse(text_.begin(), text_.end());
   } catch (const json::exception& e) {
-    throw Error(name_, "", plain_message(e.what()), "a scene file is JSON; see docs/scene.schema.json");
+    throw Error(name_, "", plain_message(e.what()), remedy);
   }
   if (const auto& repeated = walk.repeated_key())
     throw Error(name_, fmt::format("line {}: {}", repeated->line, repeated->pointer), "this key is given twice", "keep one");
@@ -200,8 +201,12 @@ Vec3 JsonValue::vector(double least, double most) const {
   return {part(0), part(1), part(2)};
 }
 
-void check_keys(const JsonValue& value, const std::vector<std::string>& known, const std::vector<std::string>& required) {
+void check_is_object(const JsonValue& value) {
   if (!value.node().is_object()) value.fail(fmt::format("{} where an object is expected", value.node().type_name()));
+}
+
+void check_keys(const JsonValue& value, const std::vector<std::string>& known, const std::vector<std::string>& required) {
+  check_is_object(value);
   for (const auto& [key, member] : value.node().items())
     if (std::find(known.begin(), known.end(), key) == known.end())
       value.member(key).fail(fmt::format("unknown key `{}`", key), fmt::format("did you mean `{}`?", nearest_name(key, known)));

@@ -24,7 +24,8 @@ namespace pelage::io {
 /// nesting that no scene has. Memory is proportional to the text.
 class JsonDocument {
  public:
-  JsonDocument(std::string name, std::vector<char> text);
+  /// `remedy` tells whoever gives malformed JSON what is expected.
+  JsonDocument(std::string name, std::vector<char> text, const std::string& remedy);
   const std::string& name() const { return name_; }
   const nlohmann::json& root() const { return root_; }
   /// Of the place that a JSON pointer names, or of what is around it. Reads the text again: for messages.
@@ -81,6 +82,9 @@ struct Field {
 };
 template <class T>
 using Fields = std::vector<Field<T>>;
+
+/// Throws Error where `value` is no object.
+void check_is_object(const JsonValue& value);
 
 /// Checks that `value` is an object with the required keys and no others than `known`; throws Error naming the nearest.
 void check_keys(const JsonValue& value, const std::vector<std::string>& known, const std::vector<std::string>& required);

@@ -250,7 +250,7 @@ const Fields<SceneText>& scene_fields() {
 }
 
 SceneText read_scene_text(const std::string& name, std::vector<char> json) {
-  const JsonDocument document(name, std::move(json));
+  const JsonDocument document(name, std::move(json), "a scene file is JSON; see docs/scene.schema.json");
   SceneText text;
   read_object(JsonValue(document), scene_fields(), text);
   return text;

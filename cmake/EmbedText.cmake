@@ -1,0 +1,17 @@
+# cmake -D INPUTS=page.css;… -D OUTPUT=a.cpp -D NAMESPACE=n -D HEADER=h -P EmbedText.cmake
+# Writes a source file that defines, for each text file, a constant of its name: page.css becomes kPageCss.
+set(text "// Made from the files of the same names.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n\n")
+foreach(input ${INPUTS})
+  get_filename_component(name ${input} NAME)
+  string(REGEX MATCHALL "[a-z]+" words ${name})
+  set(constant k)
+  foreach(word ${words})
+    string(SUBSTRING ${word} 0 1 first)
+    string(SUBSTRING ${word} 1 -1 rest)
+    string(TOUPPER ${first} first)
+    string(APPEND constant ${first}${rest})
+  endforeach()
+  file(READ ${input} content)
+  string(APPEND text "const std::string_view ${constant} = R\"embedded(${content})embedded\";\n\n")
+endforeach()
+file(WRITE ${OUTPUT} "${text}}  // namespace ${NAMESPACE}\n")
