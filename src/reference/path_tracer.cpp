@@ -253,8 +253,13 @@ void PathTracer::State::gather_dual(const Vertex& vertex, const SceneHit& hit, c
     tally.add(radiance, crossed.count);
   };
   for (std::size_t i = 0; i < lights.lights().size(); ++i) gather_one(lights.toward(i, vertex.position));
-  const std::array<float, 4> u = random.next();
-  if (!lights.environment().black()) gather_one(lights.toward_environment({u[0], u[1]}, 1));
+  if (lights.environment().black()) return;
+  // The fiber itself is narrow, what comes through others is wide: directions are drawn for one or the other.
+  const EnvironmentSampler& environment = lights.environment();
+  const std::array<float, 4> u = random.next(), v = random.next();
+  const Vec3 direction = v[0] < 0.5f ? pelage::sample(vertex.bsdf, u).direction : environment.sample({v[1], v[2]});
+  const float density = 0.5f * (pdf(vertex.bsdf, direction) + environment.pdf(direction));
+  gather_one({direction, INFINITY, environment.radiance(direction) / density, density, true});
 }
 
 PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "frame/dual_scattering_tables.h"
+#include "frame/fiber.h"
 #include "kernel/scalar.h"
 #include "kit/trace_kit.h"
 #include "reference/fiber_bsdf.h"
@@ -293,6 +295,73 @@ TEST(PathTracer, EmptySceneIsEmpty) {
   const PathSample sky = PathTracer(scene, {}).sample(1, 2, 3);
   EXPECT_EQ(sky.alpha, 1);
   EXPECT_EQ(sky.radiance, Vec3(1, 2, 3));
+}
+
+// Dual scattering behind n strands: Zinke 2008, eq. 5, with the attenuation from quadrature.
+TEST(PathTracer, DualScatteringBehindCountedStrands) {
+  for (int n = 0; n < 4; ++n) {
+    std::vector<std::vector<Vec3>> all;
+    for (int i = 0; i <= n; ++i) {  // the first is seen, the others stand between it and the light
+      const Vec3 at = Vec3(1, 0, 0) * (0.2f * static_cast<float>(i));
+      all.push_back({at - Vec3(0, 0.5f, 0), at - Vec3(0, 0.2f, 0), at + Vec3(0, 0.2f, 0), at + Vec3(0, 0.5f, 0)});
+    }
+    Scene scene = scene_of(kit::strands(all, 0.02f), 0.01f, 4);
+    Light light;
+    light.direction = normalize(Vec3(-1, -0.3f, 0)), light.intensity = {2, 2, 2};
+    scene.lights = {light};
+    PathSettings settings;
+    settings.integrator = Integrator::kDual;
+    const PathSample s = PathTracer(scene, settings).sample(2, 2, 0);
+    ASSERT_TRUE(s.hair);
+
+    using namespace kernel;
+    const HairMaterial& material = scene.grooms[0].material;
+    const ScatterFiber fiber = make_fiber(material, {});
+    const ScatterLobes lobes = scatter_prepare_marschner(fiber, 0, 1);
+    const ScatterAverages averages = scatter_averages(lobes);
+    const ScatterBack back = scatter_back(averages, lobes);
+    const float sin_i = -light.direction.y, cos_i = std::sqrt(1 - sin_i * sin_i), cos_phi = 0;
+    const float variance = static_cast<float>(n) * averages.v_f;
+    Vec3 expected = scatter_dual_local(back, variance, sin_i, cos_i, cos_phi);
+    if (n == 0) {
+      expected += scatter_marschner(lobes, sin_i, cos_i, cos_phi);
+    } else {
+      expected += scatter_dual_forward_marschner(lobes, variance, sin_i, cos_i, cos_phi);
+      const auto through = [&](float sigma_a) {
+        return 0.7f * static_cast<float>(
+                          std::pow(forward_attenuation(material, static_cast<double>(cos_i), static_cast<double>(sigma_a)), n));
+      };
+      expected = expected * Vec3(through(fiber.sigma_a.x), through(fiber.sigma_a.y), through(fiber.sigma_a.z));
+    }
+    for (const auto channel : {&Vec3::x, &Vec3::y, &Vec3::z})
+      EXPECT_NEAR(s.radiance.*channel, 2 * expected.*channel, 0.02f * expected.*channel) << n;
+  }
+}
+
+// An environment is many lights: sampled directions and a sum over a grid of directional lights agree.
+TEST(PathTracer, DualScatteringInAnEnvironment) {
+  Scene scene = scene_of(kit::ball(300, 0.1f, 3e-3f), 0.15f, 8);
+  PathSettings settings;
+  settings.integrator = Integrator::kDual;
+  settings.positions = {{0.5f, 0.5f}};
+  Scene lit = scene;
+  scene.environment.radiance = {1, 1, 1};
+  const Estimate sampled = estimate(PathTracer(scene, settings), scene, 4096);
+  constexpr int kRows = 60, kColumns = 120;
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < kColumns; ++x) {
+      const float polar = (static_cast<float>(y) + 0.5f) / kRows * 3.14159265f,
+                  around = (static_cast<float>(x) + 0.5f) / kColumns * 6.28318531f;
+      Light light;
+      light.direction = {std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around)};
+      const float power = std::sin(polar) * 3.14159265f / kRows * 6.28318531f / kColumns;
+      light.intensity = {power, power, power};
+      lit.lights.push_back(light);
+    }
+  const Estimate summed = estimate(PathTracer(lit, settings), lit, 1);
+  std::printf("dual in an environment: sampled %.5f ± %.5f, summed %.5f\n", sampled.mean, std::sqrt(sampled.variance),
+              summed.mean);
+  EXPECT_NEAR(sampled.mean, summed.mean, 0.02 * summed.mean);
 }
 
 // The place and the width of the first hit, and where it was a frame before.
