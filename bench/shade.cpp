@@ -71,6 +71,7 @@ struct Model {
 constexpr Model kModels[] = {{"kajiya-kay", HairMaterial::Model::kKajiyaKay, false},
                              {"marschner", HairMaterial::Model::kMarschner, false},
                              {"zhu", HairMaterial::Model::kZhu, false},
+                             {"sadeghi", HairMaterial::Model::kSadeghi, false},
                              {"dual", HairMaterial::Model::kMarschner, true}};
 
 /// Fibers of all directions under a light from above.

@@ -137,7 +137,9 @@ void apply_material(const RenderOptions& o, HairMaterial& m) {
     m.model = by_name<HairMaterial::Model>("--model", *o.model,
                                            {{"kajiya-kay", HairMaterial::Model::kKajiyaKay},
                                             {"marschner", HairMaterial::Model::kMarschner},
-                                            {"zhu", HairMaterial::Model::kZhu}});
+                                            {"zhu", HairMaterial::Model::kZhu},
+                                            {"chiang", HairMaterial::Model::kChiang},
+                                            {"sadeghi", HairMaterial::Model::kSadeghi}});
   if (o.hair) {
     const Vec2 melanin = by_name<Vec2>("--hair", *o.hair,
                                        {{"black", {8, 0}},

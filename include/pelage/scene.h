@@ -43,9 +43,28 @@ struct Environment {
   bool visible = false;              ///< shown behind the scene; otherwise the background colour is
 };
 
+/// A lobe of Sadeghi's model, as an artist sets it.
+struct ArtistLobe {
+  float intensity;      ///< share of the light that it scatters, 0…1; where all lobes exceed 1, all are scaled down
+  Vec3 color{1, 1, 1};  ///< 0…1; but for R it multiplies the hair's own color
+  float shift;          ///< radians of θ_h = (θ_i + θ_o)/2, positive toward the tip
+  float width;          ///< radians, standard deviation of θ_h
+};
+
+/// Sadeghi's model: every lobe has handles of its own, and they do not act on each other.
+struct ArtistLobes {
+  ArtistLobe r{0.08f, {1, 1, 1}, -3.f * 3.14159265f / 180, 7.5f * 3.14159265f / 180};
+  ArtistLobe tt{0.55f, {1, 1, 1}, 1.5f * 3.14159265f / 180, 3.75f * 3.14159265f / 180};
+  ArtistLobe trt{0.25f, {1, 1, 1}, 4.5f * 3.14159265f / 180, 15.f * 3.14159265f / 180};  ///< without its glints
+  float tt_azimuthal_width = 15.f * 3.14159265f / 180;                                   ///< radians, standard deviation
+  float glint_intensity = 0.1f;                  ///< of both glints together; color, shift and width are TRT's
+  float glint_angle = 35.f * 3.14159265f / 180;  ///< radians of azimuth from the light to either glint
+  float glint_width = 8.f * 3.14159265f / 180;   ///< radians, azimuthal standard deviation
+};
+
 /// Single-fibre scattering and its colour.
 struct HairMaterial {
-  enum class Model { kKajiyaKay, kMarschner, kZhu };
+  enum class Model { kKajiyaKay, kMarschner, kZhu, kChiang, kSadeghi };
   enum class ColorSource { kMelanin, kRgb, kStrand };
   Model model = Model::kMarschner;
   ColorSource color_source = ColorSource::kMelanin;
@@ -57,6 +76,7 @@ struct HairMaterial {
   float beta_azimuthal = 15.f * 3.14159265f / 180;     ///< radians, standard deviation of N_TT
   float cuticle_tilt = 3.f * 3.14159265f / 180;  ///< radians, α ≥ 0; R shifts by −2α in θ_i + θ_o terms toward the root
   float specular_gain = 1;                       ///< multiplies R; 1 is physical
+  ArtistLobes artist;                            ///< of kSadeghi, which has no use for eta, tilt, gain and beta_longitudinal
 };
 
 struct GroomInstance {

@@ -45,7 +45,7 @@ struct Offset {
 };
 
 std::array<Offset, kOffsets> offsets(const HairMaterial& m, double cos_theta) {
-  const bool marschner = m.model == HairMaterial::Model::kMarschner;
+  const bool marschner = m.model != HairMaterial::Model::kZhu;
   const double c = std::max(cos_theta, 1e-4), sin2 = 1 - c * c, eta = m.eta;
   const double v = static_cast<double>(m.beta_azimuthal) * m.beta_azimuthal;
   const double inv_eta = c / std::sqrt(eta * eta - sin2), cos_theta_t = std::sqrt(1 - sin2 / (eta * eta));

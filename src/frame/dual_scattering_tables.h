@@ -25,7 +25,7 @@ struct ForwardAttenuationTable {
 };
 
 /// Mean share of light that goes on into the forward half circle of azimuths; exact to quadrature (double, converged).
-/// The model, Marschner or Zhu, decides the azimuthal lobes. Zinke 2008, eq. 6; docs/derivations/dual_scattering.md.
+/// The model decides the azimuthal lobes: Zhu has its own, Chiang has Marschner's. Zinke 2008, eq. 6; docs/derivations/dual_scattering.md.
 double forward_attenuation(const HairMaterial& material, double cos_theta, double sigma_a);
 
 /// Deterministic; about 10 ms. Safe to call from several threads.

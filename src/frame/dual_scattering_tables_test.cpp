@@ -50,9 +50,9 @@ TEST(ForwardAttenuationTable, WithinItsBoundOfAdaptiveQuadrature) {
   std::printf("table of a_f: worst error %.2e\n", worst);
 }
 
-// Between the nodes and with the blur, for both models: bilinear interpolation against the quadrature itself.
-TEST(ForwardAttenuationTable, InterpolatesWithinItsBoundForBothModels) {
-  for (const auto model : {HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu}) {
+// Between the nodes and with the blur, for every model: bilinear interpolation against the quadrature itself.
+TEST(ForwardAttenuationTable, InterpolatesWithinItsBoundForEveryModel) {
+  for (const auto model : {HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu, HairMaterial::Model::kChiang}) {
     for (const float beta_n : {0.05f, 0.26f, 0.9f}) {
       HairMaterial m;
       m.model = model, m.beta_azimuthal = beta_n;
@@ -71,7 +71,7 @@ TEST(ForwardAttenuationTable, InterpolatesWithinItsBoundForBothModels) {
 
 // The lobes that are shaded with and the table agree: one fiber.
 TEST(ForwardAttenuationTable, AgreesWithTheLobesOfTheKernel) {
-  for (const auto model : {HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu}) {
+  for (const auto model : {HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu, HairMaterial::Model::kChiang}) {
     HairMaterial m;
     m.model = model;
     const ForwardAttenuationTable table = make_forward_attenuation_table(m);
@@ -79,8 +79,9 @@ TEST(ForwardAttenuationTable, AgreesWithTheLobesOfTheKernel) {
       const kernel::ScatterFiber f =
           kernel::scatter_fiber(m.eta, m.beta_longitudinal, m.beta_azimuthal, m.cuticle_tilt, 1, {0.1f, 0.5f, 1.5f});
       const float s = std::sin(theta), c = std::cos(theta);
-      const kernel::ScatterLobes l = model == HairMaterial::Model::kZhu ? kernel::scatter_prepare_zhu(f, s, c)
-                                                                        : kernel::scatter_prepare_marschner(f, s, c);
+      const kernel::ScatterLobes l = model == HairMaterial::Model::kZhu      ? kernel::scatter_prepare_zhu(f, s, c)
+                                     : model == HairMaterial::Model::kChiang ? kernel::scatter_prepare_chiang_far(f, s, c)
+                                                                             : kernel::scatter_prepare_marschner(f, s, c);
       const kernel::ScatterAverages a = kernel::scatter_averages(l);
       const float bound = kernel::kDualAverageMaxAbsError + kernel::kScatterTableMaxAbsError;
       EXPECT_NEAR(table.lookup(c, 0.1f), a.a_f.x, bound) << theta;

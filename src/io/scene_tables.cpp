@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "frame/sample_positions.h"
+#include "kernel/scalar.h"
 
 namespace pelage::io {
 namespace {
@@ -142,10 +143,48 @@ const Fields<GrowText>& grow_fields() {
   return table;
 }
 
+const Fields<ArtistLobe>& artist_lobe_fields() {
+  using L = ArtistLobe;
+  static const Fields<L> table{
+      number_field("intensity", "Share of the light that the lobe scatters", &L::intensity, 0, 1),
+      vector_field("color", "Linear; multiplies the hair's own color, but for R", &L::color, 0, 1),
+      number_field("shift", "Degrees, positive toward the tip", &L::shift, -45, 45, kDegree),
+      number_field("width", "Degrees, standard deviation", &L::width, 0.5, 60, kDegree),
+  };
+  return table;
+}
+
+const Fields<ArtistLobes>& artist_fields() {
+  using A = ArtistLobes;
+  static const Fields<A> table{
+      object_field("r", "The primary highlight", &A::r, artist_lobe_fields()),
+      object_field("tt", "Light that comes through", &A::tt, artist_lobe_fields()),
+      object_field("trt", "The secondary highlight without its glints", &A::trt, artist_lobe_fields()),
+      number_field("tt_azimuthal_width", "Degrees, standard deviation of TT around the strand", &A::tt_azimuthal_width, 0.5, 90,
+                   kDegree),
+      number_field("glint_intensity", "Share of the light that both glints scatter", &A::glint_intensity, 0, 1),
+      number_field("glint_angle", "Degrees around the strand from the light to either glint", &A::glint_angle, 0, 90, kDegree),
+      number_field("glint_width", "Degrees, standard deviation of a glint around the strand", &A::glint_width, 0.5, 90,
+                   kDegree),
+  };
+  return table;
+}
+
+// One of Chiang's roughnesses as the standard deviation that it means.
+Field<HairMaterial> roughness_field(const char* key, const char* about, float HairMaterial::*member,
+                                    float (*deviation)(float)) {
+  return {key,
+          {{"description", about}, {"type", "number"}, {"minimum", 0.01}, {"maximum", 1.0}},
+          [=](const JsonValue& v, HairMaterial& out) { out.*member = deviation(static_cast<float>(v.number(0.01, 1))); }};
+}
+
 const Fields<HairMaterial>& material_fields() {
   using M = HairMaterial;
-  static const Names<M::Model> models{
-      {"kajiya-kay", M::Model::kKajiyaKay}, {"marschner", M::Model::kMarschner}, {"zhu", M::Model::kZhu}};
+  static const Names<M::Model> models{{"kajiya-kay", M::Model::kKajiyaKay},
+                                      {"marschner", M::Model::kMarschner},
+                                      {"zhu", M::Model::kZhu},
+                                      {"chiang", M::Model::kChiang},
+                                      {"sadeghi", M::Model::kSadeghi}};
   static const Names<M::ColorSource> sources{
       {"melanin", M::ColorSource::kMelanin}, {"rgb", M::ColorSource::kRgb}, {"strand", M::ColorSource::kStrand}};
   Field<M> color = vector_field("color", "Linear color of a dense tuft; sets color_source to rgb", &M::color, 0, 1);
@@ -162,8 +201,13 @@ const Fields<HairMaterial>& material_fields() {
       number_field("eta", "Index of refraction", &M::eta, 1.01, 3),
       number_field("beta_longitudinal", "Degrees, standard deviation of the R lobe", &M::beta_longitudinal, 0.5, 60, kDegree),
       number_field("beta_azimuthal", "Degrees, standard deviation of the TT lobe", &M::beta_azimuthal, 0.5, 90, kDegree),
+      roughness_field("beta_m", "Chiang's longitudinal roughness, 0 to 1; sets beta_longitudinal", &M::beta_longitudinal,
+                      kernel::scatter_chiang_beta_m),
+      roughness_field("beta_n", "Chiang's azimuthal roughness, 0 to 1; sets beta_azimuthal", &M::beta_azimuthal,
+                      kernel::scatter_chiang_beta_n),
       number_field("cuticle_tilt", "Degrees", &M::cuticle_tilt, 0, 15, kDegree),
       number_field("specular_gain", "Multiplies the R lobe; 1 is physical", &M::specular_gain, 0, 100),
+      object_field("artist", "Lobes of the model sadeghi", &M::artist, artist_fields()),
   };
   return table;
 }

@@ -54,6 +54,32 @@ TEST_F(SceneFile, AFewWordsMakeAWholeScene) {
   EXPECT_GT(length(scene.camera.eye - scene.camera.target), 0.1f);
 }
 
+TEST_F(SceneFile, MaterialsOfChiangAndSadeghi) {
+  const Scene scene = read(R"({"grooms": [
+    {"grow": {"style": "straight", "strands": 2}, "material": {"model": "chiang", "beta_m": 0.3, "beta_n": 0.4}},
+    {"grow": {"style": "straight", "strands": 2}, "material": {"model": "sadeghi", "artist": {
+       "r": {"intensity": 0.2, "color": [0.9, 0.8, 0.7], "shift": -5, "width": 6}, "tt": {"intensity": 0.3}, "trt": {"shift": 7},
+       "tt_azimuthal_width": 12, "glint_intensity": 0.15, "glint_angle": 40, "glint_width": 5}}}]})");
+  const HairMaterial& chiang = scene.grooms.at(0).material;
+  EXPECT_EQ(chiang.model, HairMaterial::Model::kChiang);
+  EXPECT_NEAR(chiang.beta_longitudinal, 0.5 * (0.726 * 0.3 + 0.812 * 0.09), 1e-5) << "half of the root of Chiang 2016, eq. 7";
+  EXPECT_NEAR(chiang.beta_azimuthal, 0.626657 * (0.265 * 0.4 + 1.194 * 0.16) * 1.813799, 1e-5) << "Chiang 2016, eq. 8";
+  const HairMaterial& sadeghi = scene.grooms.at(1).material;
+  EXPECT_EQ(sadeghi.model, HairMaterial::Model::kSadeghi);
+  const ArtistLobes& a = sadeghi.artist;
+  EXPECT_EQ(a.r.intensity, 0.2f);
+  EXPECT_EQ(a.r.color, Vec3(0.9f, 0.8f, 0.7f));
+  EXPECT_NEAR(a.r.shift, -0.0872665f, 1e-6f);
+  EXPECT_NEAR(a.r.width, 0.1047198f, 1e-6f);
+  EXPECT_EQ(a.tt.intensity, 0.3f);
+  EXPECT_EQ(a.tt.width, ArtistLobes{}.tt.width) << "what is not said stays";
+  EXPECT_NEAR(a.trt.shift, 0.122173f, 1e-6f);
+  EXPECT_NEAR(a.tt_azimuthal_width, 0.20944f, 1e-5f);
+  EXPECT_EQ(a.glint_intensity, 0.15f);
+  EXPECT_NEAR(a.glint_angle, 0.698132f, 1e-5f);
+  EXPECT_NEAR(a.glint_width, 0.0872665f, 1e-6f);
+}
+
 TEST_F(SceneFile, EveryValueArrives) {
   std::ofstream(folder_ / "strand.obj") << "v 0 0 0\nv 0 0.1 0\nv 0.1 0 0\nf 1 2 3\n";
   const Scene scene = read(R"({

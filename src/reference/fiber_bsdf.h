@@ -4,12 +4,13 @@
 #include <pelage/scene.h>
 
 #include <array>
+#include <variant>
 
-#include "kernel/scalar.h"
+#include "reference/fiber_models.h"
 
 namespace pelage {
 
-/// A sampled direction of light. Lobes: 0 R, 1 TT, 2 TRT, 3 what remains (later paths or the diffuse lobe).
+/// A sampled direction of light. Lobes: 0 R, 1 TT, 2 TRT, 3 what remains (later paths, the diffuse lobe, glints).
 struct FiberSample {
   Vec3 direction;  ///< toward the light, unit length
   Vec3 value;      ///< f·cos θ_i of all lobes, per solid angle
@@ -42,18 +43,13 @@ class FiberBsdf {
   Vec3 albedo() const;
 
  private:
-  struct Angles {
-    float sin_i, cos_i, phi;
-  };
-  Angles angles(Vec3 to_light) const;
-  Vec3 evaluate_at(const kernel::ScatterLobes& lobes, Vec3 diffuse, Angles a) const;
-  float pdf_at(Angles a) const;
+  using Model = std::variant<fiber_models::Marschner, fiber_models::Zhu, fiber_models::KajiyaKay, fiber_models::Chiang,
+                             fiber_models::Sadeghi>;
+  static Model make_model(HairMaterial::Model model, const FiberView& view);
+  FiberAngles angles(Vec3 to_light) const;
 
-  HairMaterial::Model model_;
   Vec3 tangent_, across_, side_;  // right-handed frame: along, in the plane of to_eye, and the rest
-  kernel::ScatterLobes lobes_;
-  Vec3 diffuse_;  // Kajiya-Kay's color
-  kernel::ScatterChoice choice_;
+  Model model_;
 };
 
 }  // namespace pelage

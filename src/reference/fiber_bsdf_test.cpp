@@ -18,6 +18,7 @@ namespace {
 
 using Model = HairMaterial::Model;
 constexpr Vec3 kTangent{0, 1, 0};
+constexpr Model kModels[] = {Model::kKajiyaKay, Model::kMarschner, Model::kZhu, Model::kChiang, Model::kSadeghi};
 
 struct Case {
   HairMaterial material;
@@ -36,14 +37,16 @@ const char* name_of(Model m) {
   switch (m) {
     case Model::kKajiyaKay: return "Kajiya-Kay";
     case Model::kMarschner: return "Marschner";
-    case Model::kZhu: break;
+    case Model::kZhu: return "Zhu";
+    case Model::kChiang: return "Chiang";
+    case Model::kSadeghi: break;
   }
-  return "Zhu";
+  return "Sadeghi";
 }
 
 std::vector<Case> grid(std::vector<float> betas_m, std::vector<float> betas_n, std::vector<float> thetas) {
   std::vector<Case> all;
-  for (const Model model : {Model::kKajiyaKay, Model::kMarschner, Model::kZhu}) {
+  for (const Model model : kModels) {
     for (const float beta_m : betas_m) {
       for (const float beta_n : betas_n) {
         for (const float tilt : {0.f, 0.07f}) {
@@ -53,6 +56,11 @@ std::vector<Case> grid(std::vector<float> betas_m, std::vector<float> betas_n, s
               c.material.model = model;
               c.material.beta_longitudinal = beta_m, c.material.beta_azimuthal = beta_n;
               c.material.cuticle_tilt = tilt;
+              c.material.artist.r.width = beta_m, c.material.artist.tt.width = beta_m / 2,
+              c.material.artist.trt.width = 2 * beta_m;
+              c.material.artist.tt_azimuthal_width = c.material.artist.glint_width = beta_n;
+              c.material.artist.r.shift = -tilt, c.material.artist.tt.shift = tilt / 2,
+              c.material.artist.trt.shift = 1.5f * tilt;
               c.material.eumelanin = eumelanin, c.material.pheomelanin = 0;
               c.name += " beta_m " + std::to_string(beta_m) + " beta_n " + std::to_string(beta_n) + " tilt " +
                         std::to_string(tilt) + " eumelanin " + std::to_string(eumelanin) + " theta_o " + std::to_string(theta);
@@ -167,7 +175,7 @@ TEST(FiberBsdf, FiniteAtTheExtremes) {
       return which < 0.2f ? lo : which < 0.4f ? hi : lo + (hi - lo) * u;
     };
     HairMaterial m;
-    m.model = static_cast<Model>(i % 3);
+    m.model = kModels[i % std::size(kModels)];
     m.eumelanin = draw(0, 100), m.pheomelanin = 0, m.eta = draw(1.01f, 3);
     m.beta_longitudinal = draw(0.0087f, 1.05f), m.beta_azimuthal = draw(0.0087f, 1.57f);
     m.cuticle_tilt = draw(0, 0.26f), m.specular_gain = draw(0, 100);

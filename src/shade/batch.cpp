@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "frame/fiber.h"
 #include "frame/light_lookup.h"
 
 namespace pelage {
@@ -53,8 +54,11 @@ std::vector<LightConstants> light_constants(const LightRig& rig) {
 }
 
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig) {
-  const bool dual = dual_scattering && material.model != HairMaterial::Model::kKajiyaKay;
-  return {material, dual, light_constants(rig), dual ? make_forward_attenuation_table(material) : ForwardAttenuationTable{}};
+  using Model = HairMaterial::Model;
+  const bool dual = dual_scattering && material.model != Model::kKajiyaKay;
+  const bool tabulated = dual && material.model != Model::kSadeghi;
+  return {material, make_artist_fiber(material), dual, light_constants(rig),
+          tabulated ? make_forward_attenuation_table(material) : ForwardAttenuationTable{}};
 }
 
 }  // namespace pelage

@@ -53,16 +53,18 @@ struct LightConstants {
 /// What all evaluations of a groom share.
 struct ShadeConstants {
   HairMaterial material;
+  kernel::ScatterArtistFiber artist;  ///< of kSadeghi
   bool dual_scattering = true;
   std::vector<LightConstants> lights;
-  ForwardAttenuationTable attenuation;  ///< of the material; empty where there is no dual scattering
+  ForwardAttenuationTable attenuation;  ///< of the material; empty without dual scattering, and of kSadeghi
 };
 
 /// Radians: a light of more spread than this counts as coming from a half circle of azimuths.
 inline constexpr float kWideSpread = 0.25f;
 
 std::vector<LightConstants> light_constants(const LightRig& rig);
-/// Makes the material's table where dual scattering is on and the model knows it (Kajiya-Kay does not).
+/// Makes the material's table where dual scattering is on and the model needs one: Kajiya-Kay does not know it, Sadeghi's
+/// lobes do not depend on the inclination.
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig);
 
 }  // namespace pelage

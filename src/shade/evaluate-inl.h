@@ -102,13 +102,32 @@ struct ShadePlace {
   Vec3 position, tangent;
   Vec3 across_o;  // direction to the eye in the normal plane, unit length
   ScatterFiber fiber;
-  ScatterLobes lobes;
+  ScatterLobes lobes;    // of every model but Sadeghi's
+  ScatterArtist artist;  // of Sadeghi's
   ScatterAverages averages;
   ScatterBack back;
-  Vec3 tuft_color;  // of Kajiya-Kay
+  Vec3 tuft_color;  // of Kajiya-Kay and Sadeghi
 };
 
-PELAGE_LANES_FN ShadePlace shade_place(const HairMaterial& material, const ShadeBatch& batch, std::size_t i) {
+// Lobes of the models that have Marschner's kinds. Chiang's model is near-field: its mean over the fiber is shaded with.
+PELAGE_LANES_FN ScatterLobes shade_lobes(HairMaterial::Model model, ScatterFiber fiber, Float sin_o, Float cos_o) {
+  if (model == HairMaterial::Model::kZhu) return scatter_prepare_zhu(fiber, sin_o, cos_o);
+  if (model == HairMaterial::Model::kChiang) return scatter_prepare_chiang_far(fiber, sin_o, cos_o);
+  return scatter_prepare_marschner(fiber, sin_o, cos_o);
+}
+
+PELAGE_LANES_FN ScatterArtistFiber shade_artist_fiber(const pelage::kernel::ScatterArtistFiber& a) {
+  ScatterArtistFiber f;
+  f.a_r = splat(a.a_r), f.a_tt = splat(a.a_tt), f.a_trt = splat(a.a_trt), f.a_glint = splat(a.a_glint);
+  f.shift_r = Float(a.shift_r), f.shift_tt = Float(a.shift_tt), f.shift_trt = Float(a.shift_trt);
+  f.width_r = Float(a.width_r), f.width_tt = Float(a.width_tt), f.width_trt = Float(a.width_trt);
+  f.around_tt = Float(a.around_tt), f.around_glint = Float(a.around_glint);
+  f.glint_angle = Float(a.glint_angle);
+  return f;
+}
+
+PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch& batch, std::size_t i) {
+  const HairMaterial& material = k.material;
   const auto vec = [i](const ShadeBatch::Lanes& x, const ShadeBatch::Lanes& y, const ShadeBatch::Lanes& z) {
     return Vec3(load(x.data() + i), load(y.data() + i), load(z.data() + i));
   };
@@ -122,11 +141,15 @@ PELAGE_LANES_FN ShadePlace shade_place(const HairMaterial& material, const Shade
   s.fiber = scatter_fiber(Float(material.eta), Float(material.beta_longitudinal), Float(material.beta_azimuthal),
                           Float(material.cuticle_tilt), Float(material.specular_gain), absorption);
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
-  s.lobes = material.model == HairMaterial::Model::kZhu ? scatter_prepare_zhu(s.fiber, sin_o, cos_o)
-                                                        : scatter_prepare_marschner(s.fiber, sin_o, cos_o);
-  s.averages = scatter_averages(s.lobes);
-  s.back = scatter_back(s.averages, s.lobes);
   s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
+  if (material.model == HairMaterial::Model::kSadeghi) {
+    s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), s.tuft_color, sin_o, cos_o);
+    s.averages = scatter_averages_sadeghi(s.artist);
+  } else {
+    s.lobes = shade_lobes(material.model, s.fiber, sin_o, cos_o);
+    s.averages = scatter_averages(s.lobes);
+  }
+  s.back = scatter_back(s.averages, sin_o, cos_o);
   return s;
 }
 
@@ -143,7 +166,9 @@ PELAGE_LANES_FN ShadeAngles shade_angles(const ShadePlace& s, Vec3 to_light) {
   return a;
 }
 
-PELAGE_LANES_FN ScatterLobes shade_widened(ScatterLobes l, Float variance) {
+// ScatterLobes or ScatterArtist, under a light of some spread.
+template <class Lobes>
+PELAGE_LANES_FN Lobes shade_widened(Lobes l, Float variance) {
   l.r = scatter_cone_widened(l.r, variance);
   l.tt = scatter_cone_widened(l.tt, variance);
   l.trt = scatter_cone_widened(l.trt, variance);
@@ -153,6 +178,10 @@ PELAGE_LANES_FN ScatterLobes shade_widened(ScatterLobes l, Float variance) {
 // f·cos of the fiber itself under a light of some spread.
 PELAGE_LANES_FN Vec3 shade_single(HairMaterial::Model model, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
   const Float spread(light.spread2);
+  if (model == HairMaterial::Model::kSadeghi) {
+    if (light.wide) return scatter_dual_forward_sadeghi(s.artist, spread, a.sin_i, a.cos_i, a.cos_phi);
+    return scatter_sadeghi(light.spread2 > 0 ? shade_widened(s.artist, spread) : s.artist, a.sin_i, a.cos_i, a.cos_phi);
+  }
   const ScatterLobes lobes = light.spread2 > 0 ? shade_widened(s.lobes, spread) : s.lobes;
   if (model == HairMaterial::Model::kKajiyaKay) return scatter_kajiya_kay(lobes, s.tuft_color, a.sin_i, a.cos_i);
   if (model == HairMaterial::Model::kZhu)
@@ -164,9 +193,12 @@ PELAGE_LANES_FN Vec3 shade_single(HairMaterial::Model model, const ShadePlace& s
 
 // Light that other fibers scattered forward to this one, on it and on those behind it: Zinke 2008, section 4.
 PELAGE_LANES_FN Vec3 shade_forwarded(HairMaterial::Model model, const ShadePlace& s, Float variance, ShadeAngles a) {
-  const Vec3 forward = model == HairMaterial::Model::kZhu
-                           ? scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi)
-                           : scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+  Vec3 forward;
+  if (model == HairMaterial::Model::kSadeghi)
+    forward = scatter_dual_forward_sadeghi(s.artist, variance, a.sin_i, a.cos_i, a.cos_phi);
+  else if (model == HairMaterial::Model::kZhu)
+    forward = scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+  else forward = scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
   return forward + scatter_dual_local(s.back, variance, a.sin_i, a.cos_i, a.cos_phi);
 }
 
@@ -201,14 +233,15 @@ PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, c
   const Float spread(light.spread2);
   const Vec3 local = scatter_dual_local(s.back, spread, a.sin_i, a.cos_i, a.cos_phi) * scatter_dual_direct(n);
   const Vec3 forwarded = shade_forwarded(k.material.model, s, scatter_dual_variance(n, s.averages.v_f) + spread, a);
-  const Vec3 a_f = shade_forward_attenuation(k.attenuation, s, a.cos_i);
+  const Vec3 a_f =
+      k.material.model == HairMaterial::Model::kSadeghi ? s.averages.a_f : shade_forward_attenuation(k.attenuation, s, a.cos_i);
   return arriving * (direct + local + forwarded * scatter_dual_transmittance(n, a_f));
 }
 
 // Fills r, g, b of the batch.
 PELAGE_LANES_FN void shade_evaluate(const ShadeConstants& k, ShadeBatch& batch) {
   for (std::size_t i = 0; i < batch.count; i += static_cast<std::size_t>(lanes())) {
-    const ShadePlace s = shade_place(k.material, batch, i);
+    const ShadePlace s = shade_place(k, batch, i);
     Vec3 sum(Float(0.0f), Float(0.0f), Float(0.0f));
     for (const LightConstants& light : k.lights) sum = sum + shade_under(k, s, light);
     store(sum.x, batch.r.data() + i), store(sum.y, batch.g.data() + i), store(sum.z, batch.b.data() + i);

@@ -149,6 +149,10 @@ TEST(Shade, LoneStrandEqualsItsModel) {
           kernel::scatter_zhu(kernel::scatter_prepare_zhu(fiber, sin_o, cos_o), sin_i, cos_i, cos_phi));
     const Vec3 tuft = kernel::scatter_tuft_color(fiber.sigma_a, material.beta_azimuthal);
     close(lone_strand(HairMaterial::Model::kKajiyaKay, travels), kernel::scatter_kajiya_kay(m, tuft, sin_i, cos_i));
+    close(lone_strand(HairMaterial::Model::kChiang, travels),
+          kernel::scatter_marschner(kernel::scatter_prepare_chiang_far(fiber, sin_o, cos_o), sin_i, cos_i, cos_phi));
+    const kernel::ScatterArtist artist = kernel::scatter_prepare_sadeghi(make_artist_fiber(material), tuft, sin_o, cos_o);
+    close(lone_strand(HairMaterial::Model::kSadeghi, travels), kernel::scatter_sadeghi(artist, sin_i, cos_i, cos_phi));
   }
 }
 
@@ -171,7 +175,8 @@ TEST(Shade, SameBitsForAnyThreadsAndInstructionSet) {
 }
 
 TEST(Shade, WideEqualsScalar) {
-  for (const auto model : {HairMaterial::Model::kKajiyaKay, HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu}) {
+  for (const auto model : {HairMaterial::Model::kKajiyaKay, HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu,
+                           HairMaterial::Model::kChiang, HairMaterial::Model::kSadeghi}) {
     const Scene scene = thicket(model);
     const LightRig rig = prepare_lights(scene, MeshTracer({}));
     const ShadeConstants constants = shade_constants(scene.grooms[0].material, true, rig);

@@ -46,7 +46,7 @@ PELAGE_FN Vec4 parity_pairs(ScatterLobes l) { return Vec4(l.n_tt.cos_mu, l.n_tt.
 PELAGE_FN Vec3 parity_fronts(ScatterLobes l) { return Vec3(l.front_r, l.front_tt, l.front_trt); }
 PELAGE_FN Vec4 parity_averages(ScatterAverages a) { return Vec4(a.a_f.x, a.a_b.y, a.v_f + a.v_b, a.shift_f + a.shift_b); }
 PELAGE_FN Vec4 parity_back(ScatterLobes l) {
-  ScatterBack b = scatter_back(scatter_averages(l), l);
+  ScatterBack b = scatter_back(scatter_averages(l), l.sin_o, l.cos_o);
   return Vec4(b.a.x, b.a.z, b.cone.v, b.cone.shift);
 }
 // On a table that is linear in row and column, so that a cell chosen differently at an edge gives the same value.
@@ -56,7 +56,7 @@ PELAGE_FN Float parity_table(Float cos_theta, Float sigma_a) {
   return scatter_table_mix(c, v, v + Float(0.001f), v + Float(0.065f), v + Float(0.066f));
 }
 PELAGE_FN Vec3 parity_local(ScatterLobes l, Float v, Float theta_i, Float cos_phi) {
-  return scatter_dual_local(scatter_back(scatter_averages(l), l), v, m_sin(theta_i), m_cos(theta_i), cos_phi);
+  return scatter_dual_local(scatter_back(scatter_averages(l), l.sin_o, l.cos_o), v, m_sin(theta_i), m_cos(theta_i), cos_phi);
 }
 
 // A drawn direction and its density; the last of u is taken from c. Azimuths as cosines: a whole turn more is the same.
@@ -75,4 +75,43 @@ PELAGE_FN Vec4 parity_draw_kajiya_kay(ScatterLobes l, Vec4 u) {
   ScatterChoice c = scatter_choice_kajiya_kay(l, Vec3(Float(0.5f), Float(0.3f), Float(0.2f)));
   ScatterDirection d = scatter_sample_kajiya_kay(l, c, u);
   return parity_drawn(d, scatter_pdf_kajiya_kay(l, c, d.sin_i, d.cos_i));
+}
+
+// Offset h = beta_n - 0.6, inside (-1, 1).
+PELAGE_FN ScatterNear parity_near(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta, Float tilt) {
+  return scatter_prepare_chiang(parity_fiber(beta_m, beta_n, eumelanin, eta, tilt), m_sin(theta_o), m_cos(theta_o),
+                                beta_n - Float(0.6f));
+}
+PELAGE_FN ScatterLobes parity_far(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta, Float tilt) {
+  return scatter_prepare_chiang_far(parity_fiber(beta_m, beta_n, eumelanin, eta, tilt), m_sin(theta_o), m_cos(theta_o));
+}
+PELAGE_FN Vec4 parity_near_energies(ScatterNear n) { return Vec4(n.a_r, n.a_tt.x, n.a_trt.y, n.a_rest.z); }
+PELAGE_FN Vec4 parity_near_angles(ScatterNear n) { return Vec4(n.phi_r, n.phi_tt, n.phi_trt, n.rate); }
+PELAGE_FN Vec4 parity_draw_chiang(ScatterNear n, Vec4 u) {
+  ScatterChoice c = scatter_choice_chiang(n);
+  ScatterDirection d = scatter_sample_chiang(n, c, u);
+  return parity_drawn(d, scatter_pdf_chiang(n, c, d.sin_i, d.cos_i, d.phi));
+}
+
+PELAGE_FN ScatterArtist parity_artist(Float theta_o, Float width, Float around, Float angle, Float shift) {
+  ScatterArtistFiber f;
+  f.a_r = Vec3(Float(0.1f), Float(0.1f), Float(0.08f));
+  f.a_tt = Vec3(Float(0.5f), Float(0.4f), Float(0.3f));
+  f.a_trt = Vec3(Float(0.2f), Float(0.2f), Float(0.1f));
+  f.a_glint = Vec3(Float(0.1f), Float(0.1f), Float(0.05f));
+  f.shift_r = -shift;
+  f.shift_tt = shift * Float(0.5f);
+  f.shift_trt = shift * Float(1.5f);
+  f.width_r = width;
+  f.width_tt = width * Float(0.5f);
+  f.width_trt = width * Float(2.0f);
+  f.around_tt = around;
+  f.around_glint = around * Float(0.5f);
+  f.glint_angle = angle;
+  return scatter_prepare_sadeghi(f, Vec3(Float(0.9f), Float(0.6f), Float(0.3f)), m_sin(theta_o), m_cos(theta_o));
+}
+PELAGE_FN Vec4 parity_draw_sadeghi(ScatterArtist l, Vec4 u) {
+  ScatterChoice c = scatter_choice_sadeghi(l);
+  ScatterDirection d = scatter_sample_sadeghi(l, c, u);
+  return parity_drawn(d, scatter_pdf_sadeghi(l, c, d.sin_i, d.cos_i, d.phi));
 }

@@ -22,6 +22,21 @@ struct ScatterBack {
   ScatterCone cone;  // its spread and shift, of the mean channel
 };
 
+PELAGE_FN Float scatter_mean_channel(Vec3 c) { return (c.x + c.y + c.z) * Float(0.333333333333333f); }
+
+// Fills in the mean variances and shifts of three cones, weighted with what they send forward (f) and backward (b).
+PELAGE_FN ScatterAverages scatter_mean_cones(ScatterAverages energies, ScatterCone r, Float r_f, Float r_b, ScatterCone tt,
+                                             Float tt_f, Float tt_b, ScatterCone trt, Float trt_f, Float trt_b) {
+  ScatterAverages a = energies;
+  Float inv_f = Float(1.0f) / max(r_f + tt_f + trt_f, Float(1.0e-30f));
+  Float inv_b = Float(1.0f) / max(r_b + tt_b + trt_b, Float(1.0e-30f));
+  a.v_f = (r_f * r.v + tt_f * tt.v + trt_f * trt.v) * inv_f;
+  a.v_b = (r_b * r.v + tt_b * tt.v + trt_b * trt.v) * inv_b;
+  a.shift_f = (r_f * r.shift + tt_f * tt.shift + trt_f * trt.shift) * inv_f;
+  a.shift_b = (r_b * r.shift + tt_b * tt.shift + trt_b * trt.shift) * inv_b;
+  return a;
+}
+
 // Averages over the front and back half circles of the lobes (Zinke 2008, eq. 6). `rest` is isotropic in azimuth.
 PELAGE_FN ScatterAverages scatter_averages(ScatterLobes l) {
   ScatterAverages a;
@@ -34,19 +49,25 @@ PELAGE_FN ScatterAverages scatter_averages(ScatterLobes l) {
   Float r_b = l.a_r - r_f;
   a.a_f = v_splat(r_f) + tt_f + trt_f + half_rest;
   a.a_b = v_splat(r_b) + tt_b + trt_b + half_rest;
-  Float third = Float(0.333333333333333f);
-  Float m_tt_f = (tt_f.x + tt_f.y + tt_f.z) * third;
-  Float m_tt_b = (tt_b.x + tt_b.y + tt_b.z) * third;
-  Float m_rest = (half_rest.x + half_rest.y + half_rest.z) * third;
-  Float m_trt_f = (trt_f.x + trt_f.y + trt_f.z) * third + m_rest;
-  Float m_trt_b = (trt_b.x + trt_b.y + trt_b.z) * third + m_rest;
-  Float inv_f = Float(1.0f) / max(r_f + m_tt_f + m_trt_f, Float(1.0e-30f));
-  Float inv_b = Float(1.0f) / max(r_b + m_tt_b + m_trt_b, Float(1.0e-30f));
-  a.v_f = (r_f * l.r.v + m_tt_f * l.tt.v + m_trt_f * l.trt.v) * inv_f;
-  a.v_b = (r_b * l.r.v + m_tt_b * l.tt.v + m_trt_b * l.trt.v) * inv_b;
-  a.shift_f = (r_f * l.r.shift + m_tt_f * l.tt.shift + m_trt_f * l.trt.shift) * inv_f;
-  a.shift_b = (r_b * l.r.shift + m_tt_b * l.tt.shift + m_trt_b * l.trt.shift) * inv_b;
-  return a;
+  Float rest = scatter_mean_channel(half_rest);
+  return scatter_mean_cones(a, l.r, r_f, r_b, l.tt, scatter_mean_channel(tt_f), scatter_mean_channel(tt_b), l.trt,
+                            scatter_mean_channel(trt_f) + rest, scatter_mean_channel(trt_b) + rest);
+}
+
+// The same of Sadeghi's lobes: they do not depend on theta.
+PELAGE_FN ScatterAverages scatter_averages_sadeghi(ScatterArtist l) {
+  Float half_front = Float(kArtistHalfFront);
+  Vec3 r_f = l.a_r * half_front;
+  Vec3 tt_f = l.a_tt * l.front_tt;
+  Vec3 trt_f = l.a_trt * half_front + l.a_glint * l.front_glint;
+  Vec3 r_b = l.a_r - r_f;
+  Vec3 tt_b = l.a_tt - tt_f;
+  Vec3 trt_b = l.a_trt + l.a_glint - trt_f;
+  ScatterAverages a;
+  a.a_f = r_f + tt_f + trt_f;
+  a.a_b = r_b + tt_b + trt_b;
+  return scatter_mean_cones(a, l.r, scatter_mean_channel(r_f), scatter_mean_channel(r_b), l.tt, scatter_mean_channel(tt_f),
+                            scatter_mean_channel(tt_b), l.trt, scatter_mean_channel(trt_f), scatter_mean_channel(trt_b));
 }
 
 // A_B of one channel: one (A_1) or three (A_3) backward events among any number of forward ones.
@@ -59,13 +80,12 @@ PELAGE_FN Float scatter_back_energy(Float a_f, Float a_b) {
 }
 
 // Zinke 2008, eq. 16 (shift) and 17 (standard deviation), for the mean channel.
-PELAGE_FN ScatterBack scatter_back(ScatterAverages m, ScatterLobes l) {
+PELAGE_FN ScatterBack scatter_back(ScatterAverages m, Float sin_o, Float cos_o) {
   ScatterBack b;
   b.a =
       Vec3(scatter_back_energy(m.a_f.x, m.a_b.x), scatter_back_energy(m.a_f.y, m.a_b.y), scatter_back_energy(m.a_f.z, m.a_b.z));
-  Float third = Float(0.333333333333333f);
-  Float a_f = (m.a_f.x + m.a_f.y + m.a_f.z) * third;
-  Float a_b = (m.a_b.x + m.a_b.y + m.a_b.z) * third;
+  Float a_f = scatter_mean_channel(m.a_f);
+  Float a_b = scatter_mean_channel(m.a_b);
   Float f2 = a_f * a_f;
   Float b2 = a_b * a_b;
   Float k = Float(1.0f) / max(Float(1.0f) - f2, Float(1.0e-4f));
@@ -77,7 +97,7 @@ PELAGE_FN ScatterBack scatter_back(ScatterAverages m, ScatterLobes l) {
   Float sigma = (Float(1.0f) + Float(kDualDensity) * f2) * (one + b2 * three) /
                 (Float(1.0f) + b2 * (sqrt(m.v_f) + Float(1.5f) * sqrt(m.v_b)));
   shift = v_clamp(shift, -Float(kHalfPi), Float(kHalfPi));
-  b.cone = scatter_cone(l.sin_o, l.cos_o, shift, sigma * sigma);
+  b.cone = scatter_cone(sin_o, cos_o, shift, sigma * sigma);
   return b;
 }
 
@@ -125,6 +145,16 @@ PELAGE_FN Vec3 scatter_dual_forward_zhu(ScatterLobes l, Float v, Float sin_i, Fl
   Float tt = scatter_cone_value(scatter_cone_widened(l.tt, v), sin_i, cos_i) *
              scatter_half_circle(-scatter_pair_sharpness(l.n_tt), cos_phi);
   return v_splat(r) + l.a_tt * tt + l.a_rest * scatter_diffuse(cos_i);
+}
+
+PELAGE_FN Vec3 scatter_dual_forward_sadeghi(ScatterArtist l, Float v, Float sin_i, Float cos_i, Float cos_phi) {
+  Float around = scatter_reflection_averaged(cos_phi);
+  Float r = scatter_cone_value(scatter_cone_widened(l.r, v), sin_i, cos_i) * around;
+  Float tt = scatter_cone_value(scatter_cone_widened(l.tt, v), sin_i, cos_i) *
+             scatter_half_circle(-scatter_pair_sharpness(l.n_tt), cos_phi);
+  Float m_trt = scatter_cone_value(scatter_cone_widened(l.trt, v), sin_i, cos_i);
+  Float glint = scatter_half_circle(scatter_pair_sharpness(l.n_glint), cos_phi);
+  return l.a_r * r + l.a_tt * tt + (l.a_trt * around + l.a_glint * glint) * m_trt;
 }
 
 // d_b f_B cos(theta_i): light that the hairs around and behind send back, on the lit half circle (soft edge).

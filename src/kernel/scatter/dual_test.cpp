@@ -105,7 +105,7 @@ TEST(Dual, ForwardAndLocalLobesIntegrateToTheirEnergies) {
       for (const float v : {0.f, 0.05f, 0.5f}) {
         const ScatterLobes l = lobes_of(sigma, theta);
         const ScatterLobes z = scatter_prepare_zhu(fiber_of(sigma), std::sin(theta), std::cos(theta));
-        const ScatterBack b = scatter_back(scatter_averages(l), l);
+        const ScatterBack b = scatter_back(scatter_averages(l), l.sin_o, l.cos_o);
         const double marschner = l.a_r + l.a_tt.y + l.a_trt.y + l.a_rest.y, zhu = z.a_r + z.a_tt.y + z.a_rest.y;
         EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_forward_marschner(l, v, s, c, p).y; }),
                     marschner, 0.01 * marschner);
@@ -114,6 +114,50 @@ TEST(Dual, ForwardAndLocalLobesIntegrateToTheirEnergies) {
         EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_local(b, v, s, c, p).y; }),
                     2 * kDualDensity * b.a.y, 0.01 * 2 * kDualDensity * b.a.y);
       }
+    }
+  }
+}
+
+ScatterArtist artist_of(float theta_o, float around = 0.26f, float angle = 0.6f) {
+  ScatterArtistFiber f;
+  f.a_r = {0.1f, 0.1f, 0.1f}, f.a_tt = {0.5f, 0.4f, 0.3f}, f.a_trt = {0.1f, 0.2f, 0.1f}, f.a_glint = {0.05f, 0.1f, 0.02f};
+  f.shift_r = -0.05f, f.shift_tt = 0.025f, f.shift_trt = 0.08f;
+  f.width_r = 0.13f, f.width_tt = 0.07f, f.width_trt = 0.26f;
+  f.around_tt = around, f.around_glint = 0.5f * around, f.glint_angle = angle;
+  return scatter_prepare_sadeghi(f, {1, 0.8f, 0.6f}, std::sin(theta_o), std::cos(theta_o));
+}
+
+// Zinke 2008, eq. 6 written out over the lobes themselves: of what leaves at phi the share |phi|/pi goes forward.
+TEST(Dual, SadeghisAveragesAreTheIntegralsOfHisLobes) {
+  double worst = 0;
+  for (const float around : {0.1f, 0.26f, 0.8f}) {
+    for (const float angle : {0.f, 0.6f, 1.4f}) {
+      const ScatterArtist l = artist_of(0, around, angle);
+      double forward = 0, backward = 0;
+      const auto add = [&](float s, float c, float p) {
+        const double value = scatter_sadeghi(l, s, c, p).y, share = std::acos(p) / kPiD;
+        forward += value * share * c, backward += value * (1 - share) * c;
+        return value;
+      };
+      integrate(add);
+      const double step = kPiD / 300 * 2 * kPiD / 300;
+      const ScatterAverages a = scatter_averages_sadeghi(l);
+      worst = std::max({worst, std::fabs(a.a_f.y - forward * step), std::fabs(a.a_b.y - backward * step)});
+      EXPECT_NEAR(a.a_f.y, forward * step, kDualAverageMaxAbsError) << around << " " << angle;
+      EXPECT_NEAR(a.a_b.y, backward * step, kDualAverageMaxAbsError) << around << " " << angle;
+      EXPECT_NEAR(a.a_f.x + a.a_b.x, l.a_r.x + l.a_tt.x + l.a_trt.x + l.a_glint.x, 1e-6);
+    }
+  }
+  std::printf("mean attenuations of Sadeghi's lobes: worst error %.2e\n", worst);
+}
+
+TEST(Dual, SadeghisForwardLobesIntegrateToTheirEnergies) {
+  for (const float theta : {-1.3f, 0.f, 0.8f}) {
+    for (const float v : {0.f, 0.05f, 0.5f}) {
+      const ScatterArtist l = artist_of(theta);
+      const double energy = l.a_r.y + l.a_tt.y + l.a_trt.y + l.a_glint.y;
+      EXPECT_NEAR(integrate([&](float s, float c, float p) { return scatter_dual_forward_sadeghi(l, v, s, c, p).y; }), energy,
+                  0.01 * energy);
     }
   }
 }
@@ -153,7 +197,7 @@ struct Furnace {
 Furnace half_space(float sigma_a) {
   const ScatterLobes l = lobes_of({sigma_a, sigma_a, sigma_a}, 0);
   const ScatterAverages a = scatter_averages(l);
-  const ScatterBack b = scatter_back(a, l);
+  const ScatterBack b = scatter_back(a, l.sin_o, l.cos_o);
   Furnace furnace{};
   constexpr int kDepths = 60;
   for (int i = 0; i < kDepths; ++i) {

@@ -52,14 +52,16 @@ PELAGE_FN Float scatter_sample_cone(ScatterCone c, Float u, Float w) {
   Float s = sine * m_cos(Float(kTwoPi) * w) * c.cos_o - (Float(1.0f) - x) * c.sin_o;
   return v_clamp(s, Float(-1.0f), Float(1.0f));
 }
-PELAGE_FN ScatterCone scatter_chosen_cone(ScatterLobes l, Float lobe) {
+// What scatter_sample_cone reads, of the cone of the chosen lobe.
+PELAGE_FN ScatterCone scatter_chosen_cone(Float lobe, ScatterCone r, ScatterCone tt, ScatterCone trt, ScatterCone rest) {
   Mask is_r = lobe < Float(0.5f);
   Mask is_tt = lobe < Float(1.5f);
-  ScatterCone c = l.trt;  // and of the rest
-  c.sin_o = select(is_r, l.r.sin_o, select(is_tt, l.tt.sin_o, c.sin_o));
-  c.cos_o = select(is_r, l.r.cos_o, select(is_tt, l.tt.cos_o, c.cos_o));
-  c.v = select(is_r, l.r.v, select(is_tt, l.tt.v, c.v));
-  c.inv_v = select(is_r, l.r.inv_v, select(is_tt, l.tt.inv_v, c.inv_v));
+  Mask is_trt = lobe < Float(2.5f);
+  ScatterCone c = rest;
+  c.sin_o = select(is_r, r.sin_o, select(is_tt, tt.sin_o, select(is_trt, trt.sin_o, c.sin_o)));
+  c.cos_o = select(is_r, r.cos_o, select(is_tt, tt.cos_o, select(is_trt, trt.cos_o, c.cos_o)));
+  c.v = select(is_r, r.v, select(is_tt, tt.v, select(is_trt, trt.v, c.v)));
+  c.inv_v = select(is_r, r.inv_v, select(is_tt, tt.inv_v, select(is_trt, trt.inv_v, c.inv_v)));
   return c;
 }
 
@@ -161,7 +163,7 @@ PELAGE_FN ScatterDirection scatter_direction(Float sin_i, Float phi, Float lobe)
 // u.x chooses the lobe, u.y and u.z theta_i, u.w phi.
 PELAGE_FN ScatterDirection scatter_sample_marschner(ScatterLobes l, ScatterChoice c, Vec4 u) {
   Float lobe = scatter_chosen(c, u.x);
-  Float sin_i = scatter_sample_cone(scatter_chosen_cone(l, lobe), u.y, u.z);
+  Float sin_i = scatter_sample_cone(scatter_chosen_cone(lobe, l.r, l.tt, l.trt, l.trt), u.y, u.z);
   Float r = scatter_sample_reflection(l, u.w);
   Float tt = Float(kPi) + scatter_sample_pair(l.n_tt, u.w);
   Float trt = scatter_sample_pair(l.n_trt, u.w);
@@ -178,7 +180,7 @@ PELAGE_FN Float scatter_pdf_marschner(ScatterLobes l, ScatterChoice c, Float sin
 
 PELAGE_FN ScatterDirection scatter_sample_zhu(ScatterLobes l, ScatterChoice c, Vec4 u) {
   Float lobe = scatter_chosen(c, u.x);
-  Float cone = scatter_sample_cone(scatter_chosen_cone(l, lobe), u.y, u.z);
+  Float cone = scatter_sample_cone(scatter_chosen_cone(lobe, l.r, l.tt, l.trt, l.trt), u.y, u.z);
   Mask is_tt = (lobe > Float(0.5f)) && (lobe < Float(1.5f));
   Float phi = select(is_tt, Float(kPi) + scatter_sample_pair(l.n_tt, u.w), Float(kTwoPi) * u.w);
   return scatter_direction(select(lobe < Float(1.5f), cone, scatter_sample_diffuse(u.y, u.z)), phi, lobe);

@@ -237,7 +237,7 @@ TEST(Scatter, FiniteAndNotNegativeEverywhere) {
     const ScatterLobes l = scatter_prepare_marschner(f, std::sin(theta_o), std::cos(theta_o));
     const ScatterLobes z = scatter_prepare_zhu(f, std::sin(theta_o), std::cos(theta_o));
     const ScatterAverages a = scatter_averages(l);
-    const ScatterBack b = scatter_back(a, l);
+    const ScatterBack b = scatter_back(a, l.sin_o, l.cos_o);
     const float n = draw(0, 100), v = scatter_dual_variance(n, a.v_f);
     const Vec3 all[] = {scatter_marschner(l, si, ci, cos_phi),
                         scatter_zhu(z, si, ci, cos_phi),
