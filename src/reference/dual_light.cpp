@@ -25,20 +25,36 @@ Angles angles(const DualPlace& s, Vec3 to_light) {
 Vec3 single(const DualPlace& s, Angles a) {
   if (s.model == Model::kKajiyaKay) return scatter_kajiya_kay(s.lobes, s.tuft_color, a.sin_i, a.cos_i);
   if (s.model == Model::kZhu) return scatter_zhu(s.lobes, a.sin_i, a.cos_i, a.cos_phi);
+  if (s.model == Model::kSadeghi) return scatter_sadeghi(s.artist, a.sin_i, a.cos_i, a.cos_phi);
   return scatter_marschner(s.lobes, a.sin_i, a.cos_i, a.cos_phi);
 }
 
 /// The same of light that other fibers scattered forward to it.
 Vec3 forwarded(const DualPlace& s, float variance, Angles a) {
-  return s.model == Model::kZhu ? scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi)
-                                : scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+  if (s.model == Model::kZhu) return scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+  if (s.model == Model::kSadeghi) return scatter_dual_forward_sadeghi(s.artist, variance, a.sin_i, a.cos_i, a.cos_phi);
+  return scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+}
+
+/// Lobes of the models that have Marschner's kinds; of Chiang's near field the mean over the fiber.
+ScatterLobes prepare_lobes(Model model, const ScatterFiber& fiber, float sin_o, float cos_o) {
+  if (model == Model::kZhu) return scatter_prepare_zhu(fiber, sin_o, cos_o);
+  if (model == Model::kChiang) return scatter_prepare_chiang_far(fiber, sin_o, cos_o);
+  return scatter_prepare_marschner(fiber, sin_o, cos_o);
+}
+
+/// Mean forward attenuation of a strand of Sadeghi's model, the same for every inclination.
+Vec3 artist_attenuation(const HairMaterial& material, Vec3 sigma_a) {
+  return scatter_averages_sadeghi(scatter_prepare_sadeghi(make_artist_fiber(material), tuft_color(material, sigma_a), 0, 1))
+      .a_f;
 }
 
 }  // namespace
 
 DualLight::DualLight(const std::vector<GroomInstance>& grooms) {
   for (const GroomInstance& groom : grooms) {
-    const bool tabulated = groom.material.model != Model::kKajiyaKay;
+    const Model model = groom.material.model;
+    const bool tabulated = model != Model::kKajiyaKay && model != Model::kSadeghi;
     grooms_.push_back({groom.material, tabulated ? make_forward_attenuation_table(groom.material) : ForwardAttenuationTable{}});
   }
 }
@@ -51,10 +67,15 @@ DualPlace DualLight::place(std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_
   s.model = material.model;
   s.tangent = tangent;
   s.across = v_normalize(to_eye - tangent * sin_o);
-  s.lobes = s.model == Model::kZhu ? scatter_prepare_zhu(fiber, sin_o, cos_o) : scatter_prepare_marschner(fiber, sin_o, cos_o);
-  s.averages = scatter_averages(s.lobes);
-  s.back = scatter_back(s.averages, s.lobes);
-  s.tuft_color = scatter_tuft_color(fiber.sigma_a, material.beta_azimuthal);
+  s.tuft_color = tuft_color(material, fiber.sigma_a);
+  if (s.model == Model::kSadeghi) {
+    s.artist = scatter_prepare_sadeghi(make_artist_fiber(material), s.tuft_color, sin_o, cos_o);
+    s.averages = scatter_averages_sadeghi(s.artist);
+  } else {
+    s.lobes = prepare_lobes(s.model, fiber, sin_o, cos_o);
+    s.averages = scatter_averages(s.lobes);
+  }
+  s.back = scatter_back(s.averages, sin_o, cos_o);
   return s;
 }
 
@@ -64,6 +85,10 @@ void DualLight::cross(CrossedStrands& crossed, std::size_t groom, Vec3 color, Ve
   ++crossed.count;
   if (entry.material.model == Model::kKajiyaKay) {  // half of what its diffuse lobe scatters goes on
     crossed.attenuation = crossed.attenuation * scatter_tuft_color(sigma_a, entry.material.beta_azimuthal) * 0.5f;
+    return;
+  }
+  if (entry.material.model == Model::kSadeghi) {
+    crossed.attenuation = crossed.attenuation * artist_attenuation(entry.material, sigma_a);
     return;
   }
   const float sin_i = v_clamp(dot(to_light, tangent), -1, 1), cos_i = std::sqrt(1 - sin_i * sin_i);

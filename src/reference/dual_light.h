@@ -17,11 +17,12 @@ namespace pelage {
 /// A strand seen by the eye, made ready for light from anywhere.
 struct DualPlace {
   HairMaterial::Model model;
-  Vec3 tangent, across;  ///< unit length; across: toward the eye in the normal plane
-  kernel::ScatterLobes lobes;
+  Vec3 tangent, across;          ///< unit length; across: toward the eye in the normal plane
+  kernel::ScatterLobes lobes;    ///< of every model but Sadeghi's
+  kernel::ScatterArtist artist;  ///< of Sadeghi's
   kernel::ScatterAverages averages;
   kernel::ScatterBack back;
-  Vec3 tuft_color;  ///< of Kajiya-Kay
+  Vec3 tuft_color;  ///< of Kajiya-Kay and Sadeghi
 };
 
 /// Strands that light from one direction crosses.

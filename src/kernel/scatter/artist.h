@@ -1,6 +1,6 @@
 // Lobes with a handle each, which do not act on each other: R, TT, TRT without its glints, and the glints.
 // Sadeghi 2010 (references.bib: Sadeghi2010Artist), with lobes that integrate to 1, so that an intensity is an energy:
-// docs/derivations/marschner.md. Angles of shifts and widths are of theta_h = (theta_i + theta_o)/2, like the paper's.
+// docs/derivations/scattering_models.md. Angles of shifts and widths are of theta_h = (theta_i + theta_o)/2, like the paper's.
 
 // What the artist sets. Energies are intensity times color; their sum should not exceed 1.
 struct ScatterArtistFiber {

@@ -13,6 +13,7 @@
 #include "kernel/scalar.h"
 #include "kit/io_kit.h"
 #include "kit/sphere_kit.h"
+#include "oracle/fiber_oracle.h"
 
 namespace pelage::kernel {
 namespace {
@@ -132,6 +133,26 @@ TEST(Chiang, LobesIntegrateToTheirEnergies) {
     }
   }
   std::printf("integrals of Chiang's lobes: worst relative error %.1e\n", worst);
+}
+
+// Rays that the oracle traces from the eye's direction leave where and as bright as the lobes say; its offset has the other
+// sign.
+TEST(Chiang, LeavesWhereTracedRaysLeave) {
+  for (const float theta : {0.f, 0.7f, 1.3f}) {
+    for (const float h : {-0.9f, -0.3f, 0.1f, 0.8f}) {
+      const ScatterFiber f = scatter_fiber(1.55f, 0.1f, 0.2f, 0, 1, v_splat(0.4f));
+      const ScatterNear n = scatter_prepare_chiang(f, std::sin(theta), std::cos(theta), h);
+      const auto exits = oracle::trace<200>(std::cos(theta), -h, 1.55, 0.4f);
+      const float phi[] = {n.phi_r, n.phi_tt, n.phi_trt}, energy[] = {n.a_r, n.a_tt.x, n.a_trt.x, n.a_rest.x};
+      double rest = 0;
+      for (std::size_t p = 3; p < exits.size(); ++p) rest += exits[p].energy;
+      for (std::size_t p = 0; p < 3; ++p) {
+        EXPECT_NEAR(std::remainder(phi[p] - exits[p].phi, 2 * std::numbers::pi), 0, 1e-4) << "order " << p << " h " << h;
+        EXPECT_NEAR(energy[p], exits[p].energy, 1e-5) << "order " << p << " h " << h;
+      }
+      EXPECT_NEAR(energy[3], rest, 1e-5) << h;
+    }
+  }
 }
 
 TEST(Chiang, TurningTheOffsetOverMirrorsTheAzimuth) {

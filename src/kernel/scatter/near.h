@@ -1,5 +1,5 @@
 // The near field: light that meets the fiber at one offset h leaves at one azimuth for each order, blurred by a logistic.
-// Chiang 2016 (references.bib: Chiang2016Practical); derivation: docs/derivations/marschner.md.
+// Chiang 2016 (references.bib: Chiang2016Practical); derivation: docs/derivations/scattering_models.md.
 //   ScatterNear n = scatter_prepare_chiang(f, sin_o, cos_o, h)          per ray
 //   Vec3 v = scatter_chiang(n, sin_i, cos_i, phi)                         per light: f cos(theta_i)
 // h = sin(gamma_o): where the ray toward the eye leaves the fiber. phi = phi_i - phi_o has a sign here, h's.

@@ -3,7 +3,7 @@
 //   ScatterChoice c = scatter_choice(...)                                  per shading point
 //   ScatterDirection d = scatter_sample_marschner(l, c, u)
 //   Float p = scatter_pdf_marschner(l, c, d.sin_i, d.cos_i, d.phi)         per solid angle, all lobes together
-// Derivations: docs/derivations/marschner.md.
+// Derivations: docs/derivations/scattering_models.md.
 
 const float kReflectionMaxWeight = 1.5f;  // N_R over a_r times its sampling density; eta from 1.2 to 3
 const float kPairMaxWeight = 1.27f;       // a von Mises lobe over the logistic that it is sampled from
