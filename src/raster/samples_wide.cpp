@@ -173,8 +173,8 @@ HWY_NOINLINE void make_room(const SegmentLanes& w, const VisitedRows& visited, S
 
 /// One column of each lane: appends the pixels with covered samples.
 template <int kSamples>
-HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>& o, Float column, Uints first_pixel,
-                             FragmentBuffer& f, VisitedRows& visited, SampleEntry<kSamples>& entry) {
+HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>& o, Float column, Mask on_band,
+                             Uints first_pixel, FragmentBuffer& f, VisitedRows& visited, SampleEntry<kSamples>& entry) {
   const wide::RasterBand& band = w.band;
   const Float u = column + Float(0.5f), s = u - band.u;
   const Float center = wide::raster_band_center(band, s), half = wide::raster_band_half(band, s);
@@ -182,7 +182,7 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>&
   const Float reach = half + (o.most_growth + Float(0.02f));
   const Float highest = min(floor(center + (reach - o.lowest_shift) - Float(0.5f)), w.rows - Float(1.0f));
   Float row = max(ceil(center - (reach + o.highest_shift) - Float(0.5f)), Float(0.0f));
-  Mask open = column <= w.last && row <= highest;
+  Mask open = on_band && row <= highest;
   if (!wide::any(open)) return;
   visited.add(open, row, highest);
   Uints inside = hn::Set(kUint, (1u << kSamples) - 1);
@@ -226,6 +226,8 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>&
   } while (wide::any(open));
 }
 
+HWY_INLINE Float max_of_lanes(Float a) { return hn::MaxOfLanes(kFloat, a.v); }
+
 template <int kSamples>
 void samples_of_block(const ScreenBlock& block, int width, int height, FragmentBuffer& f, TileLocks& locks, PixelKey* keys) {
   SampleEntry<kSamples> entry(width, f, locks, keys);
@@ -235,11 +237,20 @@ void samples_of_block(const ScreenBlock& block, int width, int height, FragmentB
     if (!load_segments(block, j, width, height, 0.0f, 1.0f, w)) continue;
     place_samples(w.band, o);
     VisitedRows visited;
-    Uints first_pixel = hn::Mul(hn::BitCast(kUint, hn::NearestInt(w.column.v)), w.column_step);
-    for (Float column = w.column; wide::any(column <= w.last); column = column + Float(1.0f)) {
-      visit_column<kSamples>(w, o, column, first_pixel, f, visited, entry);
-      first_pixel = hn::Add(first_pixel, w.column_step);
+    const auto visit = [&](Float column, Mask on_band) {
+      const Uints first_pixel = hn::Mul(hn::BitCast(kUint, hn::NearestInt(column.v)), w.column_step);
+      visit_column<kSamples>(w, o, column, on_band, first_pixel, f, visited, entry);
+    };
+    // Caps cut the columns at either end of a segment. So that few steps have to look at them, and few branches are a
+    // surprise, lanes begin in step, then wait for the longest, and end in step.
+    constexpr int kHead = 2;
+    for (int i = 0; i < kHead; ++i) {
+      const Float column = w.column + Float(static_cast<float>(i));
+      visit(column, column <= w.last);
     }
+    const Float body = w.column + Float(static_cast<float>(kHead));
+    for (Float back = max_of_lanes(w.last - body); wide::any(back >= Float(0.0f)); back = back - Float(1.0f))
+      visit(w.last - back, w.last - back >= body);
     entry.close_group(visited.rect(w));
   }
   entry.flush();
