@@ -158,7 +158,7 @@ void print_values(const std::vector<MetricValue>& values) {
     std::string text = v.note;
     for (const Metric& metric : registered_metrics())
       if (metric.key == v.key && text.empty()) text = metric.description;
-    fmt::print("  {:<24} {:>12}  {}\n", v.key, number(v), text);
+    fmt::print("  {:<24} {:>12}{}{}\n", v.key, number(v), text.empty() ? "" : "  ", text);
   }
 }
 

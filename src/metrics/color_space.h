@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/roots.h"
+
 namespace pelage::metrics {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;  // rows
@@ -49,12 +51,14 @@ constexpr Matrix3 make_rgb_to_xyz() {
 inline constexpr Matrix3 kRgbToXyz = make_rgb_to_xyz();
 inline constexpr Matrix3 kXyzToRgb = inverse(kRgbToXyz);
 
+// Always inlined: loops over these functions become vector code.
+
 /// A color as numbers of type T: float where it is fast, double where it is the slow reference.
 template <class T>
 using Color = std::array<T, 3>;
 
 template <class T>
-Color<T> transform(const Matrix3& m, const Color<T>& c) {
+[[gnu::always_inline]] inline Color<T> transform(const Matrix3& m, const Color<T>& c) {
   Color<T> out;
   for (std::size_t i = 0; i < 3; ++i)
     out[i] = static_cast<T>(m[i][0]) * c[0] + static_cast<T>(m[i][1]) * c[1] + static_cast<T>(m[i][2]) * c[2];
@@ -63,24 +67,24 @@ Color<T> transform(const Matrix3& m, const Color<T>& c) {
 
 // YCxCz (references.bib: Zhang1997SCielab, Andersson2020Flip, section 4.1): Y' = 116 Y − 16, Cx = 500 (X − Y), Cz = 200 (Y − Z).
 template <class T>
-Color<T> xyz_to_opponent(const Color<T>& c) {
+[[gnu::always_inline]] inline Color<T> xyz_to_opponent(const Color<T>& c) {
   return {116 * c[1] - 16, 500 * (c[0] - c[1]), 200 * (c[1] - c[2])};
 }
 template <class T>
-T opponent_luminance(T y) {
+[[gnu::always_inline]] inline T opponent_luminance(T y) {
   return (y + 16) / 116;
 }
 template <class T>
-Color<T> opponent_to_xyz(const Color<T>& c) {
+[[gnu::always_inline]] inline Color<T> opponent_to_xyz(const Color<T>& c) {
   const T y = opponent_luminance(c[0]);
   return {y + c[1] / 500, y, y - c[2] / 200};
 }
 
 // CIELAB (CIE 15): its curve is the cube root with a linear start.
 template <class T>
-T lab_curve(T t) {
+[[gnu::always_inline]] inline T lab_curve(T t) {
   constexpr T delta = T(6) / 29;
-  return t > delta * delta * delta ? std::cbrt(t) : t / (3 * delta * delta) + T(4) / 29;
+  return t > delta * delta * delta ? cube_root(t) : t / (3 * delta * delta) + T(4) / 29;
 }
 
 }  // namespace pelage::metrics

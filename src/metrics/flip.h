@@ -51,7 +51,7 @@ struct HuntLab {
 
 /// CIELAB of X/Xn, Y/Yn, Z/Zn, its chroma times L/100.
 template <class T>
-HuntLab<T> hunt_lab(const Color<T>& xyz) {
+[[gnu::always_inline]] inline HuntLab<T> hunt_lab(const Color<T>& xyz) {
   const T x = lab_curve(xyz[0]), y = lab_curve(xyz[1]), z = lab_curve(xyz[2]);
   const T lightness = 116 * y - 16, hunt = T(0.01) * lightness;
   return {lightness, hunt * (500 * (x - y)), hunt * (200 * (y - z))};
@@ -59,7 +59,7 @@ HuntLab<T> hunt_lab(const Color<T>& xyz) {
 
 /// HyAB, for large color differences (references.bib: Abasi2020Distance).
 template <class T>
-T hyab(const HuntLab<T>& s, const HuntLab<T>& t) {
+[[gnu::always_inline]] inline T hyab(const HuntLab<T>& s, const HuntLab<T>& t) {
   const T da = s.a - t.a, db = s.b - t.b;
   return std::abs(s.lightness - t.lightness) + std::sqrt(da * da + db * db);
 }
@@ -72,10 +72,10 @@ inline double largest_color_error() {
 
 /// Color error 0…1 of HyAB^0.7 (section 4.1.3): linear to pt at pc of the largest, linear from there to 1.
 template <class T>
-T spread_color_error(T error, T largest) {
+[[gnu::always_inline]] inline T spread_color_error(T error, T largest) {
   const T bend = T(kBendAt) * largest;
-  if (error < bend) return T(kBendTo) / bend * error;
-  return T(kBendTo) + (error - bend) / (largest - bend) * T(1 - kBendTo);
+  const T above = T(kBendTo) + (error - bend) / (largest - bend) * T(1 - kBendTo);
+  return error < bend ? T(kBendTo) / bend * error : above;
 }
 
 /// A picture of linear Rec. 709 0…1 in YCxCz, the three as channels.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/check.h"
@@ -29,26 +30,39 @@ std::size_t pixel_count(const Image& image) {
   return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
 }
 
-void refuse_non_finite(const Picture& picture, std::size_t channel_index) {
+[[noreturn]] void refuse_non_finite(const Picture& picture, std::size_t channel_index) {
   const Image& image = picture.image;
   const std::size_t n = image.channel_count(), width = static_cast<std::size_t>(image.width);
-  for (std::size_t p = 0; p < pixel_count(image); ++p) {
-    const float x = image.pixels[p * n + channel_index];
-    if (std::isfinite(x)) continue;
-    throw Error(picture.name, fmt::format("pixel ({}, {})", p % width, p / width),
-                fmt::format("channel {} is {}", image.channels[channel_index],
-                            std::isnan(x) ? "NaN"
-                            : x > 0       ? "+Inf"
-                                          : "-Inf"),
-                "a picture with values that are no numbers cannot be compared; find what made them");
-  }
+  std::size_t p = 0;
+  while (std::isfinite(image.pixels[p * n + channel_index])) ++p;
+  const float x = image.pixels[p * n + channel_index];
+  throw Error(picture.name, fmt::format("pixel ({}, {})", p % width, p / width),
+              fmt::format("channel {} is {}", image.channels[channel_index],
+                          std::isnan(x) ? "NaN"
+                          : x > 0       ? "+Inf"
+                                        : "-Inf"),
+              "a picture with values that are no numbers cannot be compared; find what made them");
+}
+
+// A channel of every pixel, to every `stride`th number from `to` on.
+void take_channel(const Picture& picture, std::size_t channel_index, float* to, std::size_t stride) {
+  const std::size_t n = picture.image.channel_count();
+  std::atomic<bool> finite = true;
+  parallel_for(pixel_count(picture.image), 1 << 14, [&](std::size_t first, std::size_t last) {
+    bool all = true;
+    for (std::size_t p = first; p < last; ++p) {
+      const float x = picture.image.pixels[p * n + channel_index];
+      all &= std::isfinite(x);
+      to[p * stride] = x;
+    }
+    if (!all) finite = false;
+  });
+  if (!finite) refuse_non_finite(picture, channel_index);
 }
 
 std::vector<float> take_channel(const Picture& picture, std::size_t channel_index) {
-  refuse_non_finite(picture, channel_index);
-  const std::size_t n = picture.image.channel_count();
   std::vector<float> values(pixel_count(picture.image));
-  for (std::size_t p = 0; p < values.size(); ++p) values[p] = picture.image.pixels[p * n + channel_index];
+  take_channel(picture, channel_index, values.data(), 1);
   return values;
 }
 
@@ -107,7 +121,10 @@ std::optional<std::size_t> channel(const Image& image, const std::string& name) 
 }
 
 Image decode_display(Image rgb) {
-  for_each_color(rgb, [](std::size_t, float x) { return srgb_to_linear(x); });
+  parallel_for(rgb.pixels.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
+    float* x = rgb.pixels.data();
+    for (std::size_t i = first; i < last; ++i) x[i] = srgb_to_linear(x[i]);
+  });
   return rgb;
 }
 
@@ -115,11 +132,8 @@ Colors colors_of(const Picture& picture) {
   check_whole(picture);
   const Image& image = picture.image;
   const std::array<std::size_t, 3> rgb = color_channels(picture);
-  for (const std::size_t c : rgb) refuse_non_finite(picture, c);
   Colors colors{Image(image.width, image.height, {"R", "G", "B"}), {}, {}};
-  const std::size_t n = image.channel_count();
-  for (std::size_t p = 0; p < pixel_count(image); ++p)
-    for (std::size_t c = 0; c < 3; ++c) colors.rgb.pixels[3 * p + c] = image.pixels[p * n + rgb[c]];
+  for (std::size_t c = 0; c < 3; ++c) take_channel(picture, rgb[c], colors.rgb.pixels.data() + c, 3);
   if (const auto a = channel(image, "A")) colors.alpha = take_channel(picture, *a);
   const auto coverage = channel(image, "coverage");
   colors.coverage = coverage ? take_channel(picture, *coverage) : colors.alpha;
