@@ -123,6 +123,11 @@ TEST(Fingerprint, ChangesWithWhatIsSeenAndNotWithWhenToStop) {
   EXPECT_NE(fingerprint(scene, settings), mark);
   scene.lights[0].intensity.y = 1;
   EXPECT_EQ(fingerprint(scene, settings), mark);
+  scene.grooms.emplace_back().material.artist.trt.width += 0.1f;
+  const std::uint64_t with_groom = fingerprint(scene, settings);
+  scene.grooms.back().material.artist.trt.width -= 0.1f;
+  EXPECT_NE(fingerprint(scene, settings), with_groom);
+  scene.grooms.clear();
   scene.camera.fov_y += 0.01f;
   EXPECT_NE(fingerprint(scene, settings), mark);
 }

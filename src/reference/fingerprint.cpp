@@ -36,13 +36,27 @@ class Fingerprint {
     for (const auto& row : a.m)
       for (const float v : row) add(v);
   }
-  void add_one(const Camera& c) { add(c.projection, c.eye, c.target, c.up, c.fov_y, c.height, c.near_plane); }
-  void add_one(const Light& l) {
-    add(l.type, l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle, l.casts_shadow);
+  // Bindings name every field: a struct that gets another one no longer compiles here.
+  void add_one(const Camera& camera) {
+    const auto& [projection, eye, target, up, fov_y, height, near_plane] = camera;
+    add(projection, eye, target, up, fov_y, height, near_plane);
   }
-  void add_one(const HairMaterial& m) {
-    add(m.model, m.color_source, m.eumelanin, m.pheomelanin, m.color, m.eta, m.beta_longitudinal, m.beta_azimuthal,
-        m.cuticle_tilt, m.specular_gain);
+  void add_one(const Light& light) {
+    const auto& [type, name, position, direction, intensity, inner_angle, outer_angle, casts_shadow] = light;
+    add(type, position, direction, intensity, inner_angle, outer_angle, casts_shadow);
+  }
+  void add_one(const ArtistLobe& lobe) {
+    const auto& [intensity, color, shift, width] = lobe;
+    add(intensity, color, shift, width);
+  }
+  void add_one(const ArtistLobes& lobes) {
+    const auto& [r, tt, trt, tt_azimuthal_width, glint_intensity, glint_angle, glint_width] = lobes;
+    add(r, tt, trt, tt_azimuthal_width, glint_intensity, glint_angle, glint_width);
+  }
+  void add_one(const HairMaterial& material) {
+    const auto& [model, color_source, eumelanin, pheomelanin, color, eta, beta_longitudinal, beta_azimuthal, tilt, gain,
+                 artist] = material;
+    add(model, color_source, eumelanin, pheomelanin, color, eta, beta_longitudinal, beta_azimuthal, tilt, gain, artist);
   }
   void add_one(const std::shared_ptr<const Image>& image) {
     add(image != nullptr);
@@ -54,14 +68,16 @@ class Fingerprint {
     add(s.basis);
     add_array(s.points), add_array(s.widths), add_array(s.offsets), add_array(s.colors);
   }
-  void add_one(const GroomInstance& g) {
-    add(g.material, g.transform, g.width_scale, g.strands != nullptr);
-    if (g.strands) add(*g.strands);
+  void add_one(const GroomInstance& groom) {
+    const auto& [name, strands, material, transform, width_scale] = groom;
+    add(material, transform, width_scale, strands != nullptr);
+    if (strands) add(*strands);
   }
   void add_one(const TriangleMesh& m) { add_array(m.positions), add_array(m.normals), add_array(m.uv), add_array(m.triangles); }
-  void add_one(const MeshInstance& m) {
-    add(m.texture, m.color, m.specular, m.roughness, m.transform, m.mesh != nullptr);
-    if (m.mesh) add(*m.mesh);
+  void add_one(const MeshInstance& instance) {
+    const auto& [name, mesh, texture, color, specular, roughness, transform] = instance;
+    add(texture, color, specular, roughness, transform, mesh != nullptr);
+    if (mesh) add(*mesh);
   }
 
   io::Xxh64 hash_;
