@@ -319,7 +319,7 @@ TEST(PathTracer, DualScatteringBehindCountedStrands) {
     const ScatterFiber fiber = make_fiber(material, {});
     const ScatterLobes lobes = scatter_prepare_marschner(fiber, 0, 1);
     const ScatterAverages averages = scatter_averages(lobes);
-    const ScatterBack back = scatter_back(averages, lobes);
+    const ScatterBack back = scatter_back(averages, lobes.sin_o, lobes.cos_o);
     const float sin_i = -light.direction.y, cos_i = std::sqrt(1 - sin_i * sin_i), cos_phi = 0;
     const float variance = static_cast<float>(n) * averages.v_f;
     Vec3 expected = scatter_dual_local(back, variance, sin_i, cos_i, cos_phi);
