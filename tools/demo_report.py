@@ -149,9 +149,9 @@ class Workshop:
 
     @staticmethod
     def work_seconds(told, wall):
-        """Without reading and writing files."""
-        files = sum(s["seconds"] for s in told.get("stages", []) if s["stage"].startswith("io."))
-        return told.get("seconds", wall) - files
+        """Of all stages, without reading and writing files."""
+        stages = told.get("stages")
+        return sum(s["seconds"] for s in stages if not s["stage"].startswith("io.")) if stages else wall
 
 
 class Clock:
@@ -256,10 +256,14 @@ def write_tables(pelage, folder):
     return parts[0]
 
 
-def write_readme(table):
-    """Puts the table between the two marks of README.md."""
+def write_readme(table, cases, options):
+    """Puts the table, and what it was made of, between the two marks of README.md."""
+    styles = ", ".join(dict.fromkeys(case.axes["hairstyle"] for case in cases))
+    strands = f"{options.strands} strands" if options.strands else "the strands of assets/scenes"
+    told = (f"Means over {len(cases)} cases ({styles}) on hair pixels, {options.size}×{options.size} pixels, {strands}, against "
+            f"{options.samples} paths a pixel:\n\n{table}\n")
     readme = ROOT / "README.md"
-    text, count = re.subn(r"(<!-- demo report -->\n).*?(<!-- /demo report -->)", lambda m: m[1] + table + m[2], readme.read_text(), flags=re.S)
+    text, count = re.subn(r"(<!-- demo report -->\n).*?(<!-- /demo report -->)", lambda m: m[1] + told + m[2], readme.read_text(), flags=re.S)
     if count != 1:
         raise SystemExit("README.md lacks the marks <!-- demo report --> and <!-- /demo report -->")
     readme.write_text(text)
@@ -305,7 +309,7 @@ def main():
     subprocess.run([pelage, "report", "cases.json", "-o", "page"], cwd=folder, check=True)
     table = write_tables(pelage, folder)
     if options.readme:
-        write_readme(table)
+        write_readme(table, cases, options)
     print(f"\n{table}\nOpen {folder / 'page/index.html'}; all tables: {folder / 'tables.md'}")
     if failures:
         print("left out: " + ", ".join(failures), file=sys.stderr)

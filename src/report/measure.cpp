@@ -15,6 +15,11 @@ namespace {
 
 constexpr const char* kErrorMetric = "flip";  // of the error maps
 
+bool has_coverage(const Picture& picture) {
+  const auto& names = picture.image.channels;
+  return std::find(names.begin(), names.end(), "coverage") != names.end();
+}
+
 // One case with what is known of its files; errors of the library are told with the case and the picture.
 class CaseReader {
  public:
@@ -64,8 +69,7 @@ class CaseReader {
       const Picture mask = read(case_.mask, "mask");
       return told("mask", [&] { return mask_from_image(mask); });
     }
-    const auto& names = reference.image.channels;
-    if (std::find(names.begin(), names.end(), "coverage") == names.end()) return {};
+    if (!has_coverage(reference)) return {};
     return told(case_.reference, [&] { return hair_mask(reference); });
   }
 
@@ -108,6 +112,13 @@ std::string label(const std::string& key) {
 // Bias is a signed number: nearer to 0 is better, which a column cannot say.
 bool is_shown(const Metric& metric) { return metric.key != "coverage_bias"; }
 
+// Alpha, which the library takes where the channel is missing, is 1 all over pictures that have a background.
+Comparison without_alpha_error(Comparison comparison, const Picture& picture, const Picture& reference) {
+  if (!has_coverage(picture) || !has_coverage(reference))
+    std::erase_if(comparison.values, [](const MetricValue& v) { return v.key == "coverage_error"; });
+  return comparison;
+}
+
 }  // namespace
 
 std::vector<Column> columns(const Cases& cases) {
@@ -143,11 +154,13 @@ MeasuredCase measure(const Cases& cases, const Case& c) {
     Image& error = result.errors.emplace_back();
     const Picture picture = is_reference(entry) ? reference : reader.read(entry);
     reader.told(entry.method, [&] {
-      Comparison comparison = compare_images(picture, reference, whole);  // of the reference: checks it
+      Comparison comparison =
+          without_alpha_error(compare_images(picture, reference, whole), picture, reference);  // of the reference: checks it
       if (is_reference(entry)) return;
       m.whole = in_columns(cases, comparison, entry);
       error = std::move(comparison.maps.front().error);
-      if (result.numbers.hair_pixels > 0) m.hair = in_columns(cases, compare_images(picture, reference, hair), entry);
+      if (result.numbers.hair_pixels > 0)
+        m.hair = in_columns(cases, without_alpha_error(compare_images(picture, reference, hair), picture, reference), entry);
     });
     result.pictures.push_back(reader.linear_colors(picture, entry));
   }
