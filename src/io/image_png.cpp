@@ -55,6 +55,7 @@ class PngReader {
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
   Image read() {
+    check_chunks();
     read_header();
     const std::size_t row = png_get_rowbytes(png_, info_), height = png_get_image_height(png_, info_);
     std::vector<png_byte> bytes(row * height);
@@ -77,6 +78,21 @@ class PngReader {
 
   [[noreturn]] void fail(const std::string& problem) const {
     throw Error(name_, fmt::format("byte {}", stream_.at), problem, "the PNG file is truncated or damaged");
+  }
+
+  // Every chunk must be inside the file: libpng asks for its memory before it reads it.
+  void check_chunks() {
+    constexpr std::size_t kSignature = 8, kFrame = 12;  // around a chunk's data: its length, name and checksum
+    for (std::size_t at = kSignature; at < bytes_.size();) {
+      stream_.at = at;
+      const std::size_t left = bytes_.size() - at;
+      if (left < kFrame) fail("the file ends early");
+      const std::size_t data = png_get_uint_32(reinterpret_cast<png_const_bytep>(bytes_.data() + at));
+      if (data > left - kFrame) fail("the file ends early");
+      if (std::memcmp(bytes_.data() + at + 4, "IEND", 4) == 0) break;
+      at += kFrame + data;
+    }
+    stream_.at = 0;
   }
 
   void read_header() {
