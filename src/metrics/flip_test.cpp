@@ -159,6 +159,14 @@ TEST(HdrFlip, ExposuresShowTheBrightestAndTheMedianPixel) {
   EXPECT_NEAR(y * (2.51 * y + 0.03) / (y * (2.43 * y + 0.59) + 0.14), 0.85, 1e-6);
 }
 
+TEST(HdrFlip, TheMedianOfAnEvenNumberIsTheUpperOne) {
+  Picture picture = make_picture(4, 1, Encoding::kLinear);
+  const float values[] = {0.125f, 4.f, 0.25f, 1.f};
+  for (int x = 0; x < 4; ++x) std::fill_n(picture.image.at(x, 0), 3, values[x]);
+  const Exposures e = find_exposures(picture.image);
+  EXPECT_NEAR(e.stop - e.start, 2, 1e-6) << "log2(4 / 1)";
+}
+
 TEST(HdrFlip, IsTheWorstOverTheExposures) {
   const Picture reference = drawn(60, 40, Encoding::kLinear);
   Picture test = reference;
