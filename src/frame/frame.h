@@ -86,12 +86,20 @@ inline float analytic_coverage(const GBuffer& g, std::size_t pixel) {
   return -std::expm1(-static_cast<float>(g.coverage[pixel]) * GBuffer::kCoverageUnit);
 }
 
-/// Opaque scene behind and between the strands, by primary rays.
+/// Opaque scene behind and between the strands, by primary rays. Samples of a pixel that see the same surface share a color.
 struct OpaqueLayer {
   int width = 0, height = 0, samples = 1;
-  Buffer<float> depth;  ///< [h·w·samples] camera z, metres; +inf where nothing is hit
-  Buffer<Vec3> color;   ///< [h·w·samples] shaded linear radiance; 0 where nothing is hit
+  Buffer<float> depth;          ///< [h·w·samples] camera z, metres; +inf where nothing is hit
+  Buffer<std::uint32_t> first;  ///< [h·w] where the colors of a pixel's samples begin in `color`
+  Buffer<std::uint8_t> shade;   ///< [h·w·samples] the sample's color, counted from there; any where nothing is hit
+  Buffer<Vec3> color;           ///< shaded linear radiance of every distinct surface of every pixel
 };
+
+/// Radiance of sample `sample` (numbered through all pixels); 0 where nothing is hit.
+inline Vec3 opaque_color(const OpaqueLayer& layer, std::size_t sample) {
+  if (!(layer.depth[sample] < INFINITY)) return {0, 0, 0};
+  return layer.color[layer.first[sample / static_cast<std::size_t>(layer.samples)] + layer.shade[sample]];
+}
 
 /// Deep opacity map of one light: how many strands lie between the light and a place (Yuksel & Keyser 2008).
 /// Crossings are expectations: the mean over a texel's rays of the number of strands that a ray meets.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -14,6 +15,8 @@ namespace {
 
 constexpr float kPi = 3.14159265f;
 constexpr std::size_t kMaxSamples = 16;
+/// Pixels that are traced together.
+constexpr std::size_t kRunPixels = 256;
 /// Samples share a shade where normals differ by less than about 11° …
 constexpr float kSharedNormal = 0.98f;
 /// … and depths by less than this share.
@@ -91,8 +94,9 @@ Vec3 shade_opaque(const Scene& scene, const MeshTracer& meshes, const LightRig& 
   return sum + s.surface.color * ambient * ((1 - s.material->specular) / kPi * environment_visibility(s, rig));
 }
 
+/// Fills the depths and shades of a pixel and appends its distinct colors to `colors`.
 void trace_pixel(const Scene& scene, const CameraView& view, std::span<const Vec2> positions, const MeshTracer& meshes,
-                 const LightRig& rig, int x, int y, float* depth, Vec3* color) {
+                 const LightRig& rig, int x, int y, float* depth, std::uint8_t* shade, std::vector<Vec3>& colors) {
   std::array<Ray, kMaxSamples> rays;
   std::array<RayHit, kMaxSamples> hits;
   const std::size_t n = positions.size();
@@ -100,17 +104,30 @@ void trace_pixel(const Scene& scene, const CameraView& view, std::span<const Vec
     rays[i] = camera_ray(view, static_cast<float>(x) + positions[i].x, static_cast<float>(y) + positions[i].y);
   meshes.trace({rays.data(), n}, {hits.data(), n});
   std::array<Shading, kMaxSamples> shaded;
-  std::array<Vec3, kMaxSamples> shades;
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    depth[i] = hits[i].distance, color[i] = {0, 0, 0};
+    depth[i] = hits[i].distance, shade[i] = 0;
     if (hits[i].mesh == RayHit::kNone) continue;
     const Shading s = shading_at(scene, meshes, rays[i], hits[i]);
     std::size_t k = 0;
     while (k < count && !same_shade(shaded[k], s)) ++k;
-    if (k == count) shaded[count] = s, shades[count++] = shade_opaque(scene, meshes, rig, s);
-    color[i] = shades[k];
+    if (k == count) shaded[count++] = s, colors.push_back(shade_opaque(scene, meshes, rig, s));
+    shade[i] = static_cast<std::uint8_t>(k);
   }
+}
+
+/// Brings the colors of all runs of pixels together, in their order.
+void join_colors(const std::vector<std::vector<Vec3>>& runs, OpaqueLayer& layer) {
+  std::vector<std::size_t> begin{0};
+  for (const std::vector<Vec3>& run : runs) begin.push_back(begin.back() + run.size());
+  layer.color.resize(begin.back());
+  parallel_for(runs.size(), 64, [&](std::size_t from, std::size_t to) {
+    for (std::size_t r = from; r < to; ++r) {
+      std::copy(runs[r].begin(), runs[r].end(), layer.color.data() + begin[r]);
+      const std::size_t last = std::min((r + 1) * kRunPixels, layer.first.size());
+      for (std::size_t p = r * kRunPixels; p < last; ++p) layer.first[p] += static_cast<std::uint32_t>(begin[r]);
+    }
+  });
 }
 
 }  // namespace
@@ -123,13 +140,18 @@ OpaqueLayer trace_opaque(const Scene& scene, const CameraView& view, std::span<c
   layer.width = view.width, layer.height = view.height, layer.samples = static_cast<int>(sample_positions.size());
   const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   const std::size_t n = sample_positions.size();
-  layer.depth.resize(pixels * n), layer.color.resize(pixels * n);
-  parallel_for(pixels, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p)
-      trace_pixel(scene, view, sample_positions, meshes, rig, static_cast<int>(p % static_cast<std::size_t>(view.width)),
-                  static_cast<int>(p / static_cast<std::size_t>(view.width)), layer.depth.data() + p * n,
-                  layer.color.data() + p * n);
+  layer.depth.resize(pixels * n), layer.shade.resize(pixels * n), layer.first.resize(pixels);
+  std::vector<std::vector<Vec3>> runs((pixels + kRunPixels - 1) / kRunPixels);
+  parallel_for(runs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r)
+      for (std::size_t p = r * kRunPixels; p < std::min((r + 1) * kRunPixels, pixels); ++p) {
+        layer.first[p] = static_cast<std::uint32_t>(runs[r].size());
+        trace_pixel(scene, view, sample_positions, meshes, rig, static_cast<int>(p % static_cast<std::size_t>(view.width)),
+                    static_cast<int>(p / static_cast<std::size_t>(view.width)), layer.depth.data() + p * n,
+                    layer.shade.data() + p * n, runs[r]);
+      }
   });
+  join_colors(runs, layer);
   return layer;
 }
 
