@@ -71,10 +71,34 @@ Light parse_light(const std::string& text) {
   return light;
 }
 
+// A head of hair as people name it. Melanin alone makes black to blond; it never reads as red, whose photographs show four
+// times as much red as green where pheomelanin's absorption allows half of that, nor as gray, which is a mixture of hairs:
+// these two are given by the color of a dense tuft.
+struct HairColor {
+  Vec2 melanin;  // eumelanin, pheomelanin
+  Vec3 tuft;     // linear; black: the melanin counts
+};
+
+void apply_hair_color(const std::string& name, HairMaterial& m) {
+  const HairColor hair = by_name<HairColor>("--hair", name,
+                                            {{"black", {{6, 0}, {}}},
+                                             {"brown", {{0.7f, 0.2f}, {}}},
+                                             {"light-brown", {{0.28f, 0.15f}, {}}},
+                                             {"blond", {{0.08f, 0.1f}, {}}},
+                                             {"red", {{}, {0.28f, 0.062f, 0.016f}}},
+                                             {"gray", {{}, {0.2f, 0.2f, 0.205f}}},
+                                             {"white", {{0.01f, 0}, {}}}});
+  const bool melanin = hair.tuft == Vec3(0, 0, 0);
+  m.color_source = melanin ? HairMaterial::ColorSource::kMelanin : HairMaterial::ColorSource::kRgb;
+  if (melanin) m.eumelanin = hair.melanin.x, m.pheomelanin = hair.melanin.y;
+  else m.color = hair.tuft;
+}
+
 void read_groom_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes, Scene& scene) {
   ImportReport report;
   GroomInstance& groom = scene.grooms.emplace_back();
   groom.strands = std::make_shared<StrandSet>(read_strands(options.input, options.import, &report, progress));
+  apply_hair_color("brown", groom.material);
   if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
   notes = report.notes;
   if (!report.repairs.clean()) notes.push_back(report.repairs.summary());
@@ -140,16 +164,7 @@ void apply_material(const RenderOptions& o, HairMaterial& m) {
                                             {"zhu", HairMaterial::Model::kZhu},
                                             {"chiang", HairMaterial::Model::kChiang},
                                             {"sadeghi", HairMaterial::Model::kSadeghi}});
-  if (o.hair) {
-    const Vec2 melanin = by_name<Vec2>("--hair", *o.hair,
-                                       {{"black", {8, 0}},
-                                        {"brown", {1.3f, 0.2f}},
-                                        {"light-brown", {0.5f, 0.2f}},
-                                        {"blond", {0.12f, 0.12f}},
-                                        {"red", {0.25f, 1.3f}},
-                                        {"white", {0.01f, 0}}});
-    m.eumelanin = melanin.x, m.pheomelanin = melanin.y, m.color_source = Source::kMelanin;
-  }
+  if (o.hair) apply_hair_color(*o.hair, m);
   if (!o.melanin.empty())
     m.eumelanin = o.melanin[0], m.pheomelanin = o.melanin.size() > 1 ? o.melanin[1] : 0, m.color_source = Source::kMelanin;
   if (!o.color.empty()) m.color = vector(o.color), m.color_source = Source::kRgb;

@@ -35,7 +35,7 @@ void add_world_options(CLI::App& verb, RenderOptions& o) {
 }
 
 void add_hair_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--hair", o.hair, "black, brown, light-brown, blond, red or white")->type_name("NAME");
+  verb.add_option("--hair", o.hair, "black, brown, light-brown, blond, red, gray or white")->type_name("NAME");
   verb.add_option("--color", o.color, "Linear color of a dense tuft, 0…1")
       ->delimiter(',')
       ->expected(3)

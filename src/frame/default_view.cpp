@@ -129,9 +129,10 @@ void add_default_lights(Scene& scene) {
     light.intensity = irradiance;
     scene.lights.push_back(light);
   };
-  add("key", {0.75f, 0.85f, 0.8f}, {5.0f, 4.7f, 4.3f});
-  add("fill", {-1.0f, 0.25f, 0.7f}, {1.5f, 1.65f, 1.9f});
-  add("rim", {-0.55f, 0.75f, -1.0f}, {5.2f, 5.4f, 5.7f});
+  // The default camera stands in the subject's front left: the key lights the side that it sees, the rim the far edge.
+  add("key", {-0.75f, 0.75f, 0.9f}, {5.4f, 5.1f, 4.75f});
+  add("fill", {1.0f, 0.25f, 0.8f}, {1.3f, 1.4f, 1.55f});
+  add("rim", {0.6f, 0.75f, -1.0f}, {3.2f, 3.3f, 3.5f});
   scene.environment.radiance = {0.42f, 0.45f, 0.5f};
 }
 
