@@ -1,6 +1,8 @@
 // What hair keeps clear of.
 #pragma once
 
+#include <algorithm>
+
 #include "groom/distance_grid.h"
 #include "groom/sdf.h"
 
@@ -21,12 +23,14 @@ inline Vec3 keep_above(Vec3 root, Vec3 normal, float size, Vec3 p, float clearan
   return height < lowest ? p + normal * (lowest - height) : p;
 }
 
-/// Keeps fringe and side hair out of the face: an invisible bulge in front of it. `share` 0…1 of the way out.
+/// Keeps fringe and side hair out of the face: an invisible bulge in front of it. `share` 0…1 of the way out, which
+/// leads forward or to the side and never back into the head.
 inline Vec3 push_out_of_face(Vec3 p, float share) {
   constexpr Vec3 center(0, -0.060f, 0.135f), radii(0.105f, 0.140f, 0.105f);
   const Vec3 local = p - center;
   const float distance = sd_ellipsoid(local, radii);
-  return distance < 0 ? p - normalize(local / (radii * radii)) * (distance * share) : p;
+  const Vec3 way = Vec3(local.x, local.y, std::max(local.z, 0.01f)) / (radii * radii);
+  return distance < 0 ? p - normalize(way) * (distance * share) : p;
 }
 
 }  // namespace pelage::groom

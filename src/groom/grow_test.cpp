@@ -191,6 +191,12 @@ TEST(Collide, PushesOutOfTheFaceByItsShare) {
   EXPECT_NEAR(length(half - fringe), way / 2, 1e-6f);
   EXPECT_LT(length(groom::push_out_of_face(out, 1) - out), 0.1f * way) << "nothing left to push";
   EXPECT_GT(groom::head_distance(out), 0.02f) << "well in front of the skin";
+  for (const Vec3 temple : {Vec3(0.07f, 0, 0.09f), Vec3(-0.08f, -0.05f, 0.1f), Vec3(0, 0, 0.1f)}) {
+    const Vec3 aside = groom::push_out_of_face(temple, 1);
+    EXPECT_GT(length(aside - temple), 1e-3f);
+    EXPECT_GE(aside.z, temple.z) << "back into the head";
+    EXPECT_GE(std::abs(aside.x), std::abs(temple.x));
+  }
 }
 
 TEST(Grow, LengthsAndWidthsMatchTheSettings) {

@@ -36,7 +36,7 @@ StrandStyle style_of(HairStyle style) {
     case HairStyle::kStraight: return {0, 0, 0.3f, 0.5f, 0.2f, 0};
     case HairStyle::kWavy: return {0.35f, 0.4f, 0.4f, 0.5f, 0.25f, 0};
     case HairStyle::kCurly: return {1, 0.35f, 0.5f, 0.5f, 0.2f, 0};
-    case HairStyle::kAfro: return {1, 3, 0.85f, 0.1f, 0.1f, 0.035f};
+    case HairStyle::kAfro: return {1, 0.4f, 0.85f, 0.1f, 0.1f, 0.035f};
     case HairStyle::kPonytail: return {0.4f, 0.5f, 0.3f, 0.5f, 0.3f, 0};
     case HairStyle::kCoat: return {0.5f, 1.5f, 0.4f, 0.3f, 0.1f, 0.03f};
   }

@@ -17,16 +17,16 @@ GrowSettings grow_defaults(HairStyle style) {
       break;
     case HairStyle::kWavy:
       s.length = 0.33f, s.length_variation = 0.12f, s.clumps = 600, s.clump_tightness = 0.65f, s.frizz = 0.3f;
-      s.curl_radius = 0.007f, s.curl_pitch = 0.085f, s.flyaways = 0.025f, s.volume = 0.018f;
+      s.curl_radius = 0.010f, s.curl_pitch = 0.085f, s.flyaways = 0.025f, s.volume = 0.018f;
       break;
     case HairStyle::kCurly:
       s.length = 0.40f, s.clumps = 480, s.clump_tightness = 0.85f, s.frizz = 0.3f, s.curl_radius = 0.009f;
       s.curl_pitch = 0.036f, s.flyaways = 0.03f, s.volume = 0.024f;
       break;
     case HairStyle::kAfro:
-      s.length = 0.15f, s.length_variation = 0.07f, s.clumps = 5000, s.clump_tightness = 0.2f, s.frizz = 0.5f;
-      s.curl_radius = 0.0035f, s.curl_pitch = 0.011f, s.flyaways = 0.03f, s.gravity = 0.06f, s.width = 9e-5f, s.taper = 0.4f,
-      s.volume = 0.004f;
+      s.length = 0.175f, s.length_variation = 0.05f, s.clumps = 2200, s.clump_tightness = 0.3f, s.frizz = 0.5f;
+      s.curl_radius = 0.005f, s.curl_pitch = 0.012f, s.flyaways = 0.02f, s.gravity = 0.2f, s.width = 9e-5f;
+      s.taper = 0.4f, s.volume = 0.004f;
       break;
     case HairStyle::kPonytail:
       s.length = 0.42f, s.length_variation = 0.1f, s.clumps = 900, s.clump_tightness = 0.35f, s.frizz = 0.12f;
