@@ -92,7 +92,8 @@ void render_band(const FrameInputs& inputs, const Band& band, std::span<const Ve
   if (!inputs.meshes.empty())
     stages.run("opaque", "samples", [&](const Progress&) {
       opaque = trace_opaque(inputs.scene, view, samples, inputs.meshes, inputs.rig);
-      return StageWork{pixels * samples.size(), bytes_of(opaque.depth, opaque.color) + bytes_of(opaque.first) + bytes_of(opaque.shade)};
+      return StageWork{pixels * samples.size(),
+                       bytes_of(opaque.depth, opaque.color) + bytes_of(opaque.first) + bytes_of(opaque.shade)};
     });
 
   GBuffer gbuffer;
