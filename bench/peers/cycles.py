@@ -3,7 +3,7 @@
 
   bench/peers/cycles.py [--pelage build/release/bin/pelage] [--size 1024] [--samples 4] [--runs 3] [--strands 10000 50000]
 
-Needs `apt-get install blender`. A picture of N and one of 2 N samples a pixel are made in turn; their difference is
+Needs `apt-get install blender python3-numpy`. A picture of N and one of 2 N samples a pixel are made in turn; their difference is
 the time of N samples without start, scene and acceleration structure. Prints millions of samples per second (one sample: a
 camera ray and all that follows from it), medians, and the ratio. Both draw flat ribbons with a physical hair
 BCSDF (Principled Hair here, Marschner there) and follow 12 bounces.
@@ -22,7 +22,9 @@ BOUNCES = 12
 
 
 def run(*command):
-    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    # Blender looks for its own Python's packages; another Python earlier in the path would be asked instead.
+    environment = {**os.environ, "PATH": "/usr/bin:/bin"}
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, env=environment)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     return done.stdout
@@ -71,7 +73,7 @@ def compare(options, strands, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--pelage", default=os.path.join(HERE, "../../build/release/bin/pelage"))
+    parser.add_argument("--pelage", type=os.path.abspath, default=os.path.join(HERE, "../../build/release/bin/pelage"))
     parser.add_argument("--size", type=int, default=1024)
     parser.add_argument("--samples", type=int, default=4)
     parser.add_argument("--runs", type=int, default=3)
