@@ -45,7 +45,7 @@ ScatterLobes prepare_lobes(Model model, const ScatterFiber& fiber, float sin_o, 
 
 /// Mean forward attenuation of a strand of Sadeghi's model, the same for every inclination.
 Vec3 artist_attenuation(const HairMaterial& material, Vec3 sigma_a) {
-  return scatter_averages_sadeghi(scatter_prepare_sadeghi(make_artist_fiber(material), tuft_color(material, sigma_a), 0, 1))
+  return scatter_averages_sadeghi(scatter_prepare_sadeghi(make_artist_fiber(material), scatter_crossing_color(sigma_a), 0, 1))
       .a_f;
 }
 
@@ -69,7 +69,7 @@ DualPlace DualLight::place(std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_
   s.across = v_normalize(to_eye - tangent * sin_o);
   s.tuft_color = tuft_color(material, fiber.sigma_a);
   if (s.model == Model::kSadeghi) {
-    s.artist = scatter_prepare_sadeghi(make_artist_fiber(material), s.tuft_color, sin_o, cos_o);
+    s.artist = scatter_prepare_sadeghi(make_artist_fiber(material), scatter_crossing_color(fiber.sigma_a), sin_o, cos_o);
     s.averages = scatter_averages_sadeghi(s.artist);
   } else {
     s.lobes = prepare_lobes(s.model, fiber, sin_o, cos_o);

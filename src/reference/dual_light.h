@@ -22,7 +22,7 @@ struct DualPlace {
   kernel::ScatterArtist artist;  ///< of Sadeghi's
   kernel::ScatterAverages averages;
   kernel::ScatterBack back;
-  Vec3 tuft_color;  ///< of Kajiya-Kay and Sadeghi
+  Vec3 tuft_color;  ///< of Kajiya-Kay
 };
 
 /// Strands that light from one direction crosses.

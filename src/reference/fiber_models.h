@@ -116,8 +116,8 @@ struct Chiang {
 struct Sadeghi {
   explicit Sadeghi(const FiberView& v)
       : lobes(scatter_prepare_sadeghi(make_artist_fiber(v.material),
-                                      tuft_color(v.material, fiber_absorption(v.material, v.strand_color)), v.sin_o, v.cos_o)) {
-  }
+                                      kernel::scatter_crossing_color(fiber_absorption(v.material, v.strand_color)), v.sin_o,
+                                      v.cos_o)) {}
 
   Vec3 value(FiberAngles a) const { return scatter_sadeghi(lobes, a.sin_i, a.cos_i, m_cos(a.phi)); }
   float density(FiberAngles a) const { return scatter_pdf_sadeghi(lobes, choice, a.sin_i, a.cos_i, a.phi); }

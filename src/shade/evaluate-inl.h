@@ -106,7 +106,7 @@ struct ShadePlace {
   ScatterArtist artist;  // of Sadeghi's
   ScatterAverages averages;
   ScatterBack back;
-  Vec3 tuft_color;  // of Kajiya-Kay and Sadeghi
+  Vec3 tuft_color;  // of Kajiya-Kay
 };
 
 // Lobes of the models that have Marschner's kinds. Chiang's model is near-field: its mean over the fiber is shaded with.
@@ -143,7 +143,7 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
   s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
   if (material.model == HairMaterial::Model::kSadeghi) {
-    s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), s.tuft_color, sin_o, cos_o);
+    s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), scatter_crossing_color(absorption), sin_o, cos_o);
     s.averages = scatter_averages_sadeghi(s.artist);
   } else {
     s.lobes = shade_lobes(material.model, s.fiber, sin_o, cos_o);

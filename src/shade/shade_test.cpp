@@ -151,7 +151,8 @@ TEST(Shade, LoneStrandEqualsItsModel) {
     close(lone_strand(HairMaterial::Model::kKajiyaKay, travels), kernel::scatter_kajiya_kay(m, tuft, sin_i, cos_i));
     close(lone_strand(HairMaterial::Model::kChiang, travels),
           kernel::scatter_marschner(kernel::scatter_prepare_chiang_far(fiber, sin_o, cos_o), sin_i, cos_i, cos_phi));
-    const kernel::ScatterArtist artist = kernel::scatter_prepare_sadeghi(make_artist_fiber(material), tuft, sin_o, cos_o);
+    const kernel::ScatterArtist artist = kernel::scatter_prepare_sadeghi(
+        make_artist_fiber(material), kernel::scatter_crossing_color(fiber.sigma_a), sin_o, cos_o);
     close(lone_strand(HairMaterial::Model::kSadeghi, travels), kernel::scatter_sadeghi(artist, sin_i, cos_i, cos_phi));
   }
 }

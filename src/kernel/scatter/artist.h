@@ -51,7 +51,7 @@ PELAGE_FN ScatterCone scatter_artist_cone(Float sin_o, Float cos_o, Float shift,
   return scatter_cone(sin_o, cos_o, Float(2.0f) * shift, Float(4.0f) * b * b);
 }
 
-// The hair's own color tints everything but R.
+// `color` is what light keeps that crosses the fiber once, as TT does; TRT and the glints cross it twice.
 PELAGE_FN ScatterArtist scatter_prepare_sadeghi(ScatterArtistFiber f, Vec3 color, Float sin_o, Float cos_o_raw) {
   Float cos_o = max(cos_o_raw, Float(1.0e-4f));
   ScatterArtist l;
@@ -62,8 +62,8 @@ PELAGE_FN ScatterArtist scatter_prepare_sadeghi(ScatterArtistFiber f, Vec3 color
   l.trt = scatter_artist_cone(sin_o, cos_o, f.shift_trt, f.width_trt);
   l.a_r = f.a_r;
   l.a_tt = f.a_tt * color;
-  l.a_trt = f.a_trt * color;
-  l.a_glint = f.a_glint * color;
+  l.a_trt = f.a_trt * color * color;
+  l.a_glint = f.a_glint * color * color;
   l.n_tt = scatter_pair_at(Float(0.0f), f.around_tt);
   l.n_glint = scatter_pair_at(f.glint_angle, f.around_glint);
   // As in scatter_add_offset: the mean of |x| after a blur.

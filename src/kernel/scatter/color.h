@@ -37,3 +37,7 @@ PELAGE_FN Vec3 scatter_tuft_color(Vec3 sigma_a, Float beta_n) {
   Float d = -scatter_color_denominator(beta_n);
   return Vec3(m_exp(d * sqrt(sigma_a.x)), m_exp(d * sqrt(sigma_a.y)), m_exp(d * sqrt(sigma_a.z)));
 }
+// What light keeps that crosses one fiber: the mean of e^(-2 sigma_a cos(gamma_t)) over the offset h, with the mean cosine at
+// eta = 1.55, 0.925, in the exponent.
+const float kCrossingColorMaxAbsError = 1.5e-3f;
+PELAGE_FN Vec3 scatter_crossing_color(Vec3 sigma_a) { return v_exp(sigma_a * Float(-1.85f)); }

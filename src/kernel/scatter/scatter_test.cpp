@@ -256,6 +256,17 @@ TEST(Scatter, FiniteAndNotNegativeEverywhere) {
   }
 }
 
+TEST(Scatter, CrossingAFiberLeavesTheMeanOverItsOffsets) {
+  for (float sigma = 0; sigma < 8; sigma += 0.05f) {
+    double mean = 0;
+    for (int i = 0; i < 400; ++i) {
+      const double h = (i + 0.5) / 400;
+      mean += std::exp(-2 * static_cast<double>(sigma) * std::sqrt(1 - h * h / (1.55 * 1.55))) / 400;
+    }
+    EXPECT_NEAR(scatter_crossing_color({sigma, 0, 0}).x, mean, kCrossingColorMaxAbsError) << sigma;
+  }
+}
+
 TEST(Scatter, ColorsInvertAndDarkenWithMelanin) {
   for (const float beta_n : {0.05f, 0.26f, 0.8f}) {
     for (float c = 0.01f; c < 0.99f; c += 0.01f) {
