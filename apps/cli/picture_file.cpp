@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <pelage/error.h>
+#include <pelage/io.h>
 
 #include <algorithm>
 #include <set>
@@ -9,6 +10,17 @@
 #include "io/atomic_file.h"
 
 namespace pelage::cli {
+namespace {
+
+// The first three of four channels.
+Image without_alpha(const Image& image) {
+  Image result(image.width, image.height, {"R", "G", "B"});
+  for (std::size_t i = 0, o = 0; i < image.pixels.size(); i += 4, o += 3)
+    std::copy_n(image.pixels.data() + i, 3, result.pixels.data() + o);
+  return result;
+}
+
+}  // namespace
 
 std::string extension_of(const std::string& path) {
   const std::size_t dot = path.find_last_of("./");
@@ -33,11 +45,12 @@ void check_output(const std::string& path) {
   const io::AtomicFile probe(path);
 }
 
-Image without_alpha(const Image& image) {
-  Image result(image.width, image.height, {"R", "G", "B"});
-  for (std::size_t i = 0, o = 0; i < image.pixels.size(); i += 4, o += 3)
-    std::copy_n(image.pixels.data() + i, 3, result.pixels.data() + o);
-  return result;
+bool write_flat_picture(const std::string& path, const Image& linear, const Image& display, bool keep_alpha) {
+  const std::string extension = extension_of(path);
+  if (extension == "png") write_image(path, keep_alpha ? display : without_alpha(display));
+  else if (extension == "hdr") write_image(path, without_alpha(linear));
+  else return false;
+  return true;
 }
 
 }  // namespace pelage::cli

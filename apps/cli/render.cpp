@@ -53,10 +53,7 @@ void append_layers(const Scene& scene, const std::vector<std::string>& layers, c
 
 void write_output(const std::string& path, const RenderOptions& options, const Scene& scene, const RenderResult& result,
                   const Progress& progress) {
-  const std::string extension = extension_of(path);
-  if (extension == "png")
-    return write_image(path, scene.settings.transparent_background ? result.display : without_alpha(result.display));
-  if (extension == "hdr") return write_image(path, without_alpha(result.linear));
+  if (write_flat_picture(path, result.linear, result.display, scene.settings.transparent_background)) return;
   Image image = result.linear;
   append_layers(scene, options.layers, progress, image);
   write_image(path, image, options.full_float);
@@ -84,8 +81,10 @@ RenderResult render_pictures(const RenderOptions& options, Scene scene, const Pr
   std::vector<StageStat> stats;
   StageStat writing{"io.write", 0, 0, 0, "files"};
   RenderResult result;
+  const int first = all ? 0 : pictures - 1;
+  if (first > 0) scene.previous_camera = camera_at(first - 1);
   PictureSequence sequence(scene);
-  for (int i = all ? 0 : pictures - 1; i < pictures; ++i) {
+  for (int i = first; i < pictures; ++i) {
     if (i > 0) scene.previous_camera = camera_at(i - 1);
     scene.camera = camera_at(i);
     result = sequence.next(scene.camera, progress);

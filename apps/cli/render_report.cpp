@@ -3,10 +3,8 @@
 #include <pelage/runtime.h>
 #include <sys/resource.h>
 
-#include <nlohmann/json.hpp>
-
-#include "core/hash.h"
 #include "render.h"
+#include "stats_json.h"
 
 namespace pelage::cli {
 namespace {
@@ -58,10 +56,8 @@ void print_json(const Scene& scene, const RenderResult& result, const std::vecto
   j["seconds"] = seconds;
   j["peak_bytes"] = peak_resident_bytes();
   j["bytes_per_point"] = bytes_per_point(scene, result);
-  j["hash"] = fmt::format("{:016x}", hash_bytes(result.linear.pixels.data(), result.linear.pixels.size() * sizeof(float)));
-  for (const StageStat& s : result.stats)
-    j["stages"].push_back(
-        {{"stage", s.stage}, {"seconds", s.seconds}, {"bytes", s.bytes}, {"items", s.items}, {"unit", s.unit}});
+  j["hash"] = pixel_hash(result.linear);
+  j["stages"] = stages_json(result.stats);
   fmt::print("{}\n", j.dump(2));
 }
 

@@ -98,7 +98,6 @@ void read_groom_scene(const RenderOptions& options, const Progress& progress, st
   ImportReport report;
   GroomInstance& groom = scene.grooms.emplace_back();
   groom.strands = std::make_shared<StrandSet>(read_strands(options.input, options.import, &report, progress));
-  apply_hair_color("brown", groom.material);
   if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
   notes = report.notes;
   if (!report.repairs.clean()) notes.push_back(report.repairs.summary());

@@ -16,7 +16,8 @@ namespace pelage::cli {
 namespace {
 
 struct Options {
-  std::string cases, folder, by, metric = "flip";
+  std::string cases, folder, metric = "flip";
+  std::vector<std::string> by;
   bool markdown = false, schema = false;
 };
 
@@ -38,12 +39,16 @@ std::vector<report::CaseNumbers> make(const report::Cases& cases, report::PageWr
 
 void run(const Options& options) {
   const report::Cases cases = report::read_cases(options.cases);
+  for (const std::string& axis : options.by) report::check_axis(cases, axis, options.metric);  // before the long work
   std::optional<report::PageWriter> page;
   if (!options.folder.empty()) page.emplace(cases, options.folder);
   const std::vector<report::CaseNumbers> numbers = make(cases, page ? &*page : nullptr);
   if (options.markdown) fmt::print("{}", report::summary_markdown(cases, numbers));
-  if (!options.by.empty())
-    fmt::print("{}{}", options.markdown ? "\n" : "", report::axis_markdown(cases, numbers, options.by, options.metric));
+  const char* separator = options.markdown ? "\n" : "";
+  for (const std::string& axis : options.by) {
+    fmt::print("{}{}", separator, report::axis_markdown(cases, numbers, axis, options.metric));
+    separator = "\n";
+  }
   if (page)
     fmt::print(stderr, "{}/index.html: {} cases, {} methods\n", options.folder, cases.cases.size(), cases.methods.size());
 }
@@ -56,7 +61,9 @@ void add_report(CLI::App& app) {
   verb->add_option("CASES", o->cases, "What to show (JSON; see --schema)")->type_name("FILE");
   verb->add_option("-o,--output", o->folder, "Folder to make; open its index.html in a browser")->type_name("DIR");
   verb->add_flag("--markdown", o->markdown, "Print the means over all cases as a table");
-  verb->add_option("--by", o->by, "Print a metric of every method over the values of this axis")->type_name("AXIS");
+  verb->add_option("--by", o->by, "Print a metric of every method over the values of this axis; may be repeated")
+      ->type_name("AXIS")
+      ->allow_extra_args(false);
   verb->add_option("--metric", o->metric, "Metric of --by")->type_name("NAME")->capture_default_str();
   verb->add_flag("--schema", o->schema, "Print the JSON schema of CASES and stop");
   add_machine_options(*verb);

@@ -8,11 +8,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "core/hash.h"
 #include "picture_file.h"
 #include "render.h"
+#include "stats_json.h"
 #include "terminal.h"
 #include "verbs.h"
 
@@ -66,12 +65,10 @@ Image first_four(const Image& image) {
 }
 
 void write_output(const std::string& path, const Scene& scene, const TraceResult& result) {
-  const std::string extension = extension_of(path);
-  if (extension == "exr") return write_image(path, result.linear, true);
   const Image beauty = first_four(result.linear);
-  if (extension == "hdr") return write_image(path, without_alpha(beauty));
-  const Image display = make_display(beauty, scene.settings.tone_map);
-  write_image(path, scene.settings.transparent_background ? display : without_alpha(display));
+  if (write_flat_picture(path, beauty, make_display(beauty, scene.settings.tone_map), scene.settings.transparent_background))
+    return;
+  write_image(path, result.linear, true);
 }
 
 void print_trace_json(const TraceOptions& o, const TraceResult& result) {
@@ -84,10 +81,8 @@ void print_trace_json(const TraceOptions& o, const TraceResult& result) {
   j["noise"] = result.noise;
   j["seconds"] = result.seconds;
   j["threads"] = thread_count();
-  j["hash"] = fmt::format("{:016x}", hash_bytes(result.linear.pixels.data(), result.linear.pixels.size() * sizeof(float)));
-  for (const StageStat& s : result.stats)
-    j["stages"].push_back(
-        {{"stage", s.stage}, {"seconds", s.seconds}, {"bytes", s.bytes}, {"items", s.items}, {"unit", s.unit}});
+  j["hash"] = pixel_hash(result.linear);
+  j["stages"] = stages_json(result.stats);
   fmt::print("{}\n", j.dump(2));
 }
 
@@ -112,7 +107,8 @@ void trace_verb(TraceOptions o) {
   {
     ProgressLine line;
     const Progress progress = line.callback();
-    const Scene scene = make_scene(o.scene, progress, notes);
+    Scene scene = make_scene(o.scene, progress, notes);
+    if (o.scene.orbit) scene.previous_camera = turned(scene.camera, -*o.scene.orbit);
     result = trace(scene, o.settings, progress);
     for (const std::string& path : o.scene.outputs) write_output(path, scene, result);
   }
@@ -142,6 +138,9 @@ void add_trace_options(CLI::App& verb, TraceOptions& o) {
       ->capture_default_str();
   verb.add_option("--seed", o.settings.seed, "Of the random numbers")->check(CLI::NonNegativeNumber);
   verb.add_flag("--raster-positions", o.settings.raster_positions, "Samples where those of `render --spp` with as many stand");
+  verb.add_option("--orbit", o.scene.orbit,
+                  "Degrees that the camera came around the target since the frame before, for the layer motion")
+      ->check(CLI::Range(-3600.0, 3600.0));
   verb.add_option("--layers", o.scene.layers, "More channels of EXR output; see docs/trace.md")
       ->delimiter(',')
       ->check(CLI::IsMember(layer_names()));

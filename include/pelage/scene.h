@@ -46,7 +46,7 @@ struct Environment {
 /// A lobe of Sadeghi's model, as an artist sets it.
 struct ArtistLobe {
   float intensity;      ///< share of the light that it scatters, 0…1; where all lobes exceed 1, all are scaled down
-  Vec3 color{1, 1, 1};  ///< 0…1; but for R it multiplies the hair's own color
+  Vec3 color{1, 1, 1};  ///< 0…1; multiplies what the hair's absorption leaves of TT (one crossing) and TRT (two)
   float shift;          ///< radians of θ_h = (θ_i + θ_o)/2, positive toward the tip
   float width;          ///< radians, standard deviation of θ_h
 };
@@ -68,7 +68,7 @@ struct HairMaterial {
   enum class ColorSource { kMelanin, kRgb, kStrand };
   Model model = Model::kMarschner;
   ColorSource color_source = ColorSource::kMelanin;
-  float eumelanin = 1.3f;          ///< concentration, ≥ 0; 0.1 blond, 0.5 light brown, 1.3 brown, 8 black
+  float eumelanin = 0.7f;          ///< concentration, ≥ 0; 0.08 blond, 0.28 light brown, 0.7 brown, 6 black
   float pheomelanin = 0.2f;        ///< concentration, ≥ 0; red hair 1 and more
   Vec3 color{0.3f, 0.15f, 0.07f};  ///< linear colour of a dense tuft, 0…1, for kRgb (and where strands have none)
   float eta = 1.55f;               ///< index of refraction, > 1

@@ -25,7 +25,7 @@ inline kernel::ScatterFiber make_fiber(const HairMaterial& m, Vec3 strand_color)
                                fiber_absorption(m, strand_color));
 }
 
-/// Color of a dense tuft of hair with that absorption: what tints the lobes of kKajiyaKay and kSadeghi.
+/// Color of a dense tuft of hair with that absorption: what tints the diffuse lobe of kKajiyaKay.
 inline Vec3 tuft_color(const HairMaterial& m, Vec3 absorption) {
   return kernel::scatter_tuft_color(absorption, m.beta_azimuthal);
 }

@@ -147,7 +147,7 @@ const Fields<ArtistLobe>& artist_lobe_fields() {
   using L = ArtistLobe;
   static const Fields<L> table{
       number_field("intensity", "Share of the light that the lobe scatters", &L::intensity, 0, 1),
-      vector_field("color", "Linear; multiplies the hair's own color, but for R", &L::color, 0, 1),
+      vector_field("color", "Linear; multiplies what the hair's absorption leaves of the light", &L::color, 0, 1),
       number_field("shift", "Degrees, positive toward the tip", &L::shift, -45, 45, kDegree),
       number_field("width", "Degrees, standard deviation", &L::width, 0.5, 60, kDegree),
   };
@@ -196,7 +196,7 @@ const Fields<HairMaterial>& material_fields() {
       choice_field("model", "Single-fiber scattering", &M::model, models),
       std::move(color),
       choice_field("color_source", "Where the color of the hair comes from", &M::color_source, sources),
-      number_field("eumelanin", "Concentration; 0.1 blond, 0.5 light brown, 1.3 brown, 8 black", &M::eumelanin, 0, 100),
+      number_field("eumelanin", "Concentration; 0.08 blond, 0.28 light brown, 0.7 brown, 6 black", &M::eumelanin, 0, 100),
       number_field("pheomelanin", "Concentration; red hair 1 and more", &M::pheomelanin, 0, 100),
       number_field("eta", "Index of refraction", &M::eta, 1.01, 3),
       number_field("beta_longitudinal", "Degrees, standard deviation of the R lobe", &M::beta_longitudinal, 0.5, 60, kDegree),

@@ -156,6 +156,11 @@ TEST_F(Cli, WritesSequences) {
   EXPECT_EQ(run("render hair.pelage --size 40x30 --view strand-id -o b.png --orbit 2 --frames 3").status, 0);
   EXPECT_EQ(run("render hair.pelage --size 40x30 --view strand-id -o c.png --turn 4").status, 0);
   EXPECT_EQ(slurp(in("b.png")), slurp(in("c.png")));
+  // A picture that is drawn alone moves as it does among the others.
+  EXPECT_EQ(run("render hair.pelage --size 40x30 --view motion -o d.#.png --orbit 2 --frames 3").status, 0);
+  EXPECT_EQ(run("render hair.pelage --size 40x30 --view motion -o e.png --orbit 2 --frames 3").status, 0);
+  EXPECT_EQ(slurp(in("d.3.png")), slurp(in("e.png")));
+  EXPECT_NE(slurp(in("d.1.png")), slurp(in("e.png")));
 }
 
 TEST_F(Cli, JsonIsTheSameForAnyThreads) {

@@ -4,7 +4,7 @@
 #include <pelage/io.h>
 
 #include <algorithm>
-#include <csignal>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/cli_kit.h"
@@ -56,6 +56,18 @@ TEST_F(TraceVerb, ANamedCheckpointStaysAndRefinesThePicture) {
   EXPECT_EQ(other.status, 1);
   EXPECT_THAT(other.err, HasSubstr("a.state: fingerprint: the state of another picture"));
   EXPECT_FALSE(fs::exists(in("b.exr")));
+}
+
+TEST_F(TraceVerb, MotionIsWhereTheCameraCameFrom) {
+  const auto motion_of = [&](const std::string& options) {
+    EXPECT_EQ(run(kSmall + "-o m.exr --spp 1 --layers motion " + options).status, 0);
+    const Image image = read_image(in("m.exr").string());
+    float sum = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += image.channel_count()) sum += std::abs(image.pixels[i + 4]);
+    return sum;
+  };
+  EXPECT_EQ(motion_of(""), 0);
+  EXPECT_GT(motion_of("--orbit 3"), 0);
 }
 
 TEST_F(TraceVerb, UsageErrors) {
