@@ -173,6 +173,9 @@ TEST(Compare, HairIsWhereCoverageOrIdOrAlphaIsAboveZero) {
   Picture id = with_channel(with_channel(with_channel(flat(2, 1, 0, 0, 0), "id.R", 0), "id.G", 0), "id.B", 0);
   id.image.at(0, 0)[4] = 0.5f;
   EXPECT_THAT(hair_mask(id), ElementsAre(1, 0));
+  Picture traced = with_channel(with_channel(flat(2, 1, 0, 0, 0), "A", 1), "strand", 0);
+  traced.image.at(1, 0)[4] = 7;
+  EXPECT_THAT(hair_mask(traced), ElementsAre(0, 1));
   Picture alpha = with_channel(flat(2, 1, 0, 0, 0), "A", 0);
   alpha.image.at(1, 0)[3] = 0.5f;
   std::string note;

@@ -50,8 +50,10 @@ PixelMask hair_mask(const Picture& picture, std::string* note) {
   if (const auto c = present(image, {"coverage"}); !c.empty()) return hair_or_error(picture, above_zero(image, c), "coverage");
   if (const auto c = present(image, {"id.R", "id.G", "id.B"}); !c.empty())
     return hair_or_error(picture, above_zero(image, c), "id");
+  if (const auto c = present(image, {"strand"}); !c.empty()) return hair_or_error(picture, above_zero(image, c), "strand");
   const auto alpha = present(image, {"A"});
-  if (alpha.empty()) throw Error(picture.name, "", "no channel `coverage`, `id.R` or `A` says where hair is", kNoHairRemedy);
+  if (alpha.empty())
+    throw Error(picture.name, "", "no channel `coverage`, `id.R`, `strand` or `A` says where hair is", kNoHairRemedy);
   PixelMask mask = above_zero(image, alpha);
   // An opaque picture has alpha 1 everywhere, which says nothing about hair.
   if (all(mask)) throw Error(picture.name, "A", "alpha is above 0 everywhere, so it does not say where hair is", kNoHairRemedy);
