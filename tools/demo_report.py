@@ -245,15 +245,15 @@ def write_cases(folder, cases, chosen, seconds, size):
     return len(told["cases"])
 
 
-def write_tables(pelage, folder):
-    def table(*arguments):
-        return subprocess.run([pelage, "report", "cases.json", *arguments], cwd=folder, check=True, capture_output=True, text=True).stdout
-
+def write_page(pelage, folder):
+    """The page and tables.md, from one measurement of every picture. Returns the table of means."""
     axes = ("hairstyle", "color", "light", "distance")
     found = json.loads((folder / "cases.json").read_text())["cases"]
-    parts = [table("--markdown")] + [table("--by", a) for a in axes if len({c["axes"][a] for c in found}) > 1]
-    (folder / "tables.md").write_text("\n".join(parts))
-    return parts[0]
+    several = [a for a in axes if len({c["axes"][a] for c in found}) > 1]
+    arguments = [pelage, "report", "cases.json", "-o", "page", "--markdown", *(word for a in several for word in ("--by", a))]
+    tables = subprocess.run(arguments, cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout
+    (folder / "tables.md").write_text(tables)
+    return tables.split("\n\n")[0] + "\n"
 
 
 def write_readme(table, cases, options):
@@ -306,8 +306,7 @@ def main():
     if not write_cases(folder, cases, chosen, seconds, options.size):
         raise SystemExit("no case has both a reference and a picture to compare with it:\n" +
                          "\n".join(f"  {name}: {message}" for name, message in failures.items()))
-    subprocess.run([pelage, "report", "cases.json", "-o", "page"], cwd=folder, check=True)
-    table = write_tables(pelage, folder)
+    table = write_page(pelage, folder)
     if options.readme:
         write_readme(table, cases, options)
     print(f"\n{table}\nOpen {folder / 'page/index.html'}; all tables: {folder / 'tables.md'}")

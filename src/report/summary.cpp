@@ -124,20 +124,34 @@ std::string summary_markdown(const Cases& cases, const std::vector<CaseNumbers>&
   return table(head, body);
 }
 
+namespace {
+
+std::size_t require_name(const Cases& cases, const std::vector<std::string>& known, const std::string& name, const char* what) {
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end())
+    throw Error(cases.path, "", fmt::format("no {} has the name `{}`", what, name),
+                known.empty() ? "none is there" : fmt::format("did you mean `{}`?", nearest_name(name, known)));
+  return static_cast<std::size_t>(found - known.begin());
+}
+
+std::size_t require_metric(const Cases& cases, const std::string& metric) {
+  std::vector<std::string> keys;
+  for (const Column& column : columns(cases)) keys.push_back(column.key);
+  return require_name(cases, keys, metric, "metric");
+}
+
+}  // namespace
+
+void check_axis(const Cases& cases, const std::string& axis, const std::string& metric) {
+  require_name(cases, cases.axes, axis, "axis");
+  require_metric(cases, metric);
+}
+
 std::string axis_markdown(const Cases& cases, const std::vector<CaseNumbers>& numbers, const std::string& axis,
                           const std::string& metric) {
-  const auto require = [&](const std::vector<std::string>& known, const std::string& name, const char* what) {
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end())
-      throw Error(cases.path, "", fmt::format("no {} has the name `{}`", what, name),
-                  known.empty() ? "none is there" : fmt::format("did you mean `{}`?", nearest_name(name, known)));
-    return static_cast<std::size_t>(found - known.begin());
-  };
-  require(cases.axes, axis, "axis");
+  check_axis(cases, axis, metric);
   const std::vector<Column> metrics = columns(cases);
-  std::vector<std::string> keys;
-  for (const Column& column : metrics) keys.push_back(column.key);
-  const std::size_t j = require(keys, metric, "metric");
+  const std::size_t j = require_metric(cases, metric);
 
   const auto place = [&](const Case& c) {
     const auto found = std::find_if(c.axes.begin(), c.axes.end(), [&](const AxisValue& v) { return v.axis == axis; });

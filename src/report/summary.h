@@ -23,8 +23,10 @@ std::vector<SummaryRow> summarize(const Cases& cases, const std::vector<CaseNumb
 /// The rows as a table in Markdown, on hair pixels where every case knows them; the best of each column is bold.
 std::string summary_markdown(const Cases& cases, const std::vector<CaseNumbers>& numbers);
 
-/// One metric of the methods (rows) over the values of an axis (columns). Throws Error where `cases` has no such axis or
-/// metric, naming the nearest.
+/// Throws Error where `cases` has no such axis or metric, naming the nearest: to know before anything is measured.
+void check_axis(const Cases& cases, const std::string& axis, const std::string& metric);
+
+/// One metric of the methods (rows) over the values of an axis (columns). Throws as check_axis().
 std::string axis_markdown(const Cases& cases, const std::vector<CaseNumbers>& numbers, const std::string& axis,
                           const std::string& metric);
 
