@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pelage/image.h>
+#include <pelage/runtime.h>
 
 #include <cmath>
 
@@ -31,6 +32,18 @@ inline Image noise_picture(int width, int height) {
   Rng rng(3, 0);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = i % 4 == 3 ? 1.f : rng.uniform();
   return image;
+}
+
+/// Whether filter(picture) is the same by one thread and by five.
+template <class Filter>
+bool same_bits_for_any_threads(const Filter& filter) {
+  const Image noise = noise_picture(131, 77);
+  set_thread_count(1);
+  const Image one = filter(noise);
+  set_thread_count(5);
+  const Image five = filter(noise);
+  set_thread_count(0);
+  return one.pixels == five.pixels;
 }
 
 inline Image transposed(const Image& image) {

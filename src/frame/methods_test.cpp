@@ -13,24 +13,8 @@
 namespace pelage {
 namespace {
 
-Scene hairy_scene(int width = 96, int height = 64) {
-  Scene scene;
-  scene.settings.width = width;
-  scene.settings.height = height;
-  scene.settings.opacity_map_size = 128;
-  scene.grooms.emplace_back().strands = std::make_shared<StrandSet>(test::helices(300, 16));
-  add_default_camera(scene);
-  add_default_lights(scene);
-  return scene;
-}
-
-// A tile of 4 cm behind the middle of the hair.
-void add_tile(Scene& scene) {
-  auto mesh = std::make_shared<TriangleMesh>();
-  mesh->positions = {{-0.04f, -0.04f, 0}, {0.04f, -0.04f, 0}, {0.04f, 0.04f, 0}, {-0.04f, 0.04f, 0}};
-  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
-  scene.meshes.emplace_back().mesh = mesh;
-}
+using test::add_tile;
+using test::hairy_scene;
 
 Image linear_of(Scene scene, Method method, int samples) {
   scene.settings.method = method;
