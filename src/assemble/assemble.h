@@ -15,8 +15,8 @@ namespace pelage {
 inline constexpr float kGuardBand = 4096;
 
 /// Numbers the segments of all grooms of `scene`, seen by `view`. `settings.subdivisions` > 0 is used as it is; 0
-/// chooses per groom the least number that keeps chords within a tenth of a pixel of the curve (at most
-/// kMaxSubdivisions, by a fixed sample of the strands). Linear grooms are never subdivided by choice.
+/// chooses per groom the least number that keeps chords within a tenth of a pixel of the curve, or 0.8/n pixels for pictures
+/// of n > 8 samples a pixel (at most kMaxSubdivisions, by a fixed sample of the strands). Linear grooms are never subdivided by choice.
 /// Throws Error where the ids do not fit into 32 bits.
 SegmentNumbering number_segments(const Scene& scene, const CameraView& view);
 inline constexpr std::uint32_t kMaxSubdivisions = 16;

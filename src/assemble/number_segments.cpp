@@ -12,6 +12,7 @@ namespace pelage {
 namespace {
 
 constexpr float kMaxChordError = 0.1f;    // pixels
+constexpr int kCoarseSamples = 8;         // a pixel, up to which chords may err that much
 constexpr float kTolerableShare = 0.02f;  // of the spans looked at may be worse
 constexpr std::size_t kSampledStrands = 512;
 
@@ -31,7 +32,15 @@ float chord_error(const AssembleJob& job, std::uint32_t i, std::uint32_t begin, 
   return worst / 8;
 }
 
-std::uint32_t choose_subdivisions(const AssembleJob& job) {
+/// Pixels that chords may be off: the less, the more samples a picture takes to be exact (docs/derivations/raster.md).
+float tolerable_error(const RenderSettings& settings) {
+  const bool sampled = settings.method == Method::kMsaa || settings.method == Method::kSsaa;
+  const int samples = sampled ? settings.samples : 1;
+  return kMaxChordError * static_cast<float>(kCoarseSamples) / static_cast<float>(std::max(samples, kCoarseSamples));
+}
+
+/// The least number of parts a span that keeps all but a small share of the chords within `tolerable` pixels.
+std::uint32_t choose_subdivisions(const AssembleJob& job, float tolerable) {
   const StrandSet& set = *job.strands;
   if (set.basis == CurveBasis::kLinear) return 1;
   const std::size_t stride = std::max<std::size_t>(1, set.strand_count() / kSampledStrands);
@@ -44,7 +53,7 @@ std::uint32_t choose_subdivisions(const AssembleJob& job) {
   const auto at = errors.begin() + static_cast<std::ptrdiff_t>(static_cast<float>(errors.size() - 1) * (1 - kTolerableShare));
   std::nth_element(errors.begin(), at, errors.end());
   // Halving a chord quarters its distance from the curve.
-  const float wanted = std::ceil(std::sqrt(*at / kMaxChordError));
+  const float wanted = std::ceil(std::sqrt(*at / tolerable));
   return static_cast<std::uint32_t>(std::clamp(wanted, 1.f, static_cast<float>(kMaxSubdivisions)));
 }
 
@@ -63,8 +72,9 @@ SegmentNumbering number_segments(const Scene& scene, const CameraView& view) {
   SegmentNumbering numbering;
   std::uint64_t ids = 0;
   for (const GroomInstance& groom : scene.grooms) {
-    const std::uint32_t subdivisions = scene.settings.subdivisions > 0 ? static_cast<std::uint32_t>(scene.settings.subdivisions)
-                                                                       : choose_subdivisions(make_job(groom, view));
+    const std::uint32_t subdivisions = scene.settings.subdivisions > 0
+                                           ? static_cast<std::uint32_t>(scene.settings.subdivisions)
+                                           : choose_subdivisions(make_job(groom, view), tolerable_error(scene.settings));
     numbering.groom_base.push_back(static_cast<std::uint32_t>(ids));
     numbering.subdivisions.push_back(subdivisions);
     ids += static_cast<std::uint64_t>(groom.strands->point_count()) * subdivisions;

@@ -52,5 +52,28 @@ TEST(SegmentLookup, PlacesAreExactAtTheEnds) {
   EXPECT_EQ(tip.width, 0.5f);
 }
 
+// Chords may err by 0.1 pixels, divided by the samples a pixel above 8; halving a chord quarters its error.
+TEST(NumberSegments, ChordsAreFinerForManySamples) {
+  Scene scene = test::scene_of(test::helices(7, 13));
+  scene.settings.subdivisions = 0;
+  const CameraView view = make_camera_view(scene.camera, 150, 150);
+  const auto parts = [&](Method method, int samples) {
+    scene.settings.method = method, scene.settings.samples = samples;
+    return number_segments(scene, view).subdivisions[0];
+  };
+  const std::uint32_t few = parts(Method::kMsaa, 1);
+  ASSERT_GE(few, 2u) << "a view that asks for chords";
+  ASSERT_LE(4 * few, kMaxSubdivisions);
+  EXPECT_EQ(parts(Method::kMsaa, 8), few);
+  EXPECT_EQ(parts(Method::kSsaa, 8), few);
+  EXPECT_EQ(parts(Method::kTaa, 512), few) << "does not read `samples`";
+  for (const auto& [samples, finer] : {std::pair{32, 2u}, {128, 4u}}) {
+    EXPECT_LE(parts(Method::kSsaa, samples), finer * few) << samples;
+    EXPECT_GE(parts(Method::kSsaa, samples), finer * few - (finer - 1)) << samples;
+  }
+  EXPECT_GT(parts(Method::kMsaa, 16), few);
+  EXPECT_EQ(parts(Method::kSsaa, 4096), kMaxSubdivisions);
+}
+
 }  // namespace
 }  // namespace pelage
