@@ -36,13 +36,11 @@ struct OnePixel {
     edges.index[0] = Radiance::kNone;
     opaque.width = opaque.height = 1;
     opaque.samples = 4;
-    opaque.depth.resize(4);
     opaque.first.resize(1), opaque.shade.resize(4), opaque.color.resize(1);
     opaque.first[0] = 0, opaque.color[0] = kMesh;
     for (std::size_t s = 0; s < 4; ++s) {
       radiance.index[s] = s == 0 || s == 3 ? 0 : Radiance::kNone;
-      opaque.depth[s] = s < 2 ? 1.f : INFINITY;
-      opaque.shade[s] = 0;
+      opaque.shade[s] = s < 2 ? 0 : OpaqueLayer::kNone;
     }
     backdrop.color = kSky;
   }

@@ -59,7 +59,7 @@ class Resolver {
     return {sum.color * share, sum.alpha * share};
   }
   Rgba behind_hair(std::size_t pixel, std::size_t sample) const {
-    if (!opaque_.depth.empty() && opaque_.depth[sample] < INFINITY) return {opaque_color(opaque_, sample), 1};
+    if (!opaque_.shade.empty() && opaque_.shade[sample] != OpaqueLayer::kNone) return {opaque_color(opaque_, sample), 1};
     return {backdrop_.pixels.empty() ? backdrop_.color : backdrop_.pixels[pixel], backdrop_.alpha};
   }
 

@@ -23,8 +23,8 @@ std::uint64_t bytes_of(const Buffer<T>&... buffers) {
 }
 
 std::uint64_t bytes_of(const GBuffer& g) {
-  return bytes_of(g.center, g.conservative, g.sample_keys, g.coverage, g.tangent_cos2, g.tangent_sin2, g.overdraw,
-                  g.opaque_depth);
+  // Without opaque_depth, which the opaque layer counts.
+  return bytes_of(g.center, g.conservative, g.sample_keys, g.coverage, g.tangent_cos2, g.tangent_sin2, g.overdraw);
 }
 
 constexpr Vec2 kPixelCenter{0.5f, 0.5f};
@@ -69,13 +69,13 @@ GBuffer edge_layer(const GBuffer& gbuffer) {
 }
 
 // Nearest thing that the first sample of each pixel sees, strand or mesh.
-void keep_nearest(const GBuffer& gbuffer, const OpaqueLayer& opaque, std::size_t first_pixel, Buffer<float>& nearest) {
+void keep_nearest(const GBuffer& gbuffer, std::size_t first_pixel, Buffer<float>& nearest) {
   const Buffer<PixelKey>& keys = gbuffer.sample_keys.empty() ? gbuffer.center : gbuffer.sample_keys;
   const auto samples = static_cast<std::size_t>(gbuffer.samples);
   parallel_for(keys.size() / samples, 1 << 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const PixelKey key = keys[p * samples];
-      const float mesh = opaque.depth.empty() ? INFINITY : opaque.depth[p * samples];
+      const float mesh = gbuffer.opaque_depth.empty() ? INFINITY : gbuffer.opaque_depth[p * samples];
       nearest[first_pixel + p] = key == kEmptyPixel ? mesh : key_depth(key);
     }
   });
@@ -101,11 +101,14 @@ void render_band(const FrameInputs& inputs, const Band& band, std::span<const Ve
     RasterLayers layers{
         .center = false, .conservative = analytic, .samples = static_cast<int>(samples.size()), .analytic = analytic};
     if (samples.size() == 1 && samples[0] == kPixelCenter && !analytic) layers.center = true, layers.samples = 0;
-    std::swap(gbuffer.opaque_depth, opaque.depth);  // lent, so that it stands in memory once
+    gbuffer.opaque_depth = std::move(opaque.depth);
     const std::uint64_t segments = raster_strands(inputs.scene, view, inputs.numbering, layers, gbuffer, progress);
-    std::swap(gbuffer.opaque_depth, opaque.depth);
     return StageWork{segments, bytes_of(gbuffer)};
   });
+
+  const std::size_t first_pixel = static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(view.width);
+  if (nearest) keep_nearest(gbuffer, first_pixel, *nearest);
+  gbuffer.opaque_depth.release();  // what it hides is gone
 
   Radiance radiance, edges;
   stages.run("shade", "evaluations", [&](const Progress&) {
@@ -116,8 +119,6 @@ void render_band(const FrameInputs& inputs, const Band& band, std::span<const Ve
                      bytes_of(radiance.index, edges.index) + bytes_of(radiance.color, edges.color)};
   });
 
-  const std::size_t first_pixel = static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(view.width);
-  if (nearest) keep_nearest(gbuffer, opaque, first_pixel, *nearest);
   gbuffer.sample_keys.release();  // every strand that they show has its color
   stages.run("composite", "pixels", [&](const Progress&) {
     if (linear.pixels.empty()) linear = Image(settings.width, settings.height, {"R", "G", "B", "A"});
@@ -143,24 +144,21 @@ Image render_frame(const FrameInputs& inputs, std::span<const Vec2> positions, S
 
 Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages) {
   GBuffer gbuffer;
-  OpaqueLayer opaque = trace_opaque(inputs.scene, inputs.view, std::array{kPixelCenter}, inputs.meshes, inputs.rig);
+  gbuffer.opaque_depth = trace_opaque(inputs.scene, inputs.view, std::array{kPixelCenter}, inputs.meshes, inputs.rig).depth;
   stages.run("raster", "segments", [&](const Progress& progress) {
-    std::swap(gbuffer.opaque_depth, opaque.depth);
     const std::uint64_t segments = raster_strands(inputs.scene, inputs.view, inputs.numbering, {}, gbuffer, progress);
-    std::swap(gbuffer.opaque_depth, opaque.depth);
     return StageWork{segments, bytes_of(gbuffer)};
   });
   Buffer<float> nearest(gbuffer.center.size());
-  keep_nearest(gbuffer, opaque, 0, nearest);
+  keep_nearest(gbuffer, 0, nearest);
   return nearest;
 }
 
 DebugView render_debug_view(const FrameInputs& inputs, View what, Stages& stages) {
   GBuffer gbuffer;
-  OpaqueLayer opaque = trace_opaque(inputs.scene, inputs.view, std::array{kPixelCenter}, inputs.meshes, inputs.rig);
+  gbuffer.opaque_depth = trace_opaque(inputs.scene, inputs.view, std::array{kPixelCenter}, inputs.meshes, inputs.rig).depth;
   stages.run("raster", "segments", [&](const Progress& progress) {
     const RasterLayers layers{.analytic = what == View::kCoverage, .overdraw = what == View::kOverdraw};
-    std::swap(gbuffer.opaque_depth, opaque.depth);
     const std::uint64_t segments = raster_strands(inputs.scene, inputs.view, inputs.numbering, layers, gbuffer, progress);
     return StageWork{segments, bytes_of(gbuffer)};
   });

@@ -78,7 +78,7 @@ struct GBuffer {
   Buffer<std::int32_t> tangent_cos2;  ///< [h·w] Σ area·cos 2ψ, ψ the screen angle of the band; fixed point
   Buffer<std::int32_t> tangent_sin2;  ///< [h·w] Σ area·sin 2ψ
   Buffer<std::uint32_t> overdraw;     ///< [h·w] fragments tested; only for the debug view
-  Buffer<float> opaque_depth;         ///< [h·w·samples], or empty without meshes; camera z, metres, +inf for none
+  Buffer<float> opaque_depth;         ///< OpaqueLayer::depth, handed over to raster; empty without meshes
 };
 
 /// Share of the pixel that strands cover, 0…1. Strands are independent of each other: transmittances multiply.
@@ -88,16 +88,17 @@ inline float analytic_coverage(const GBuffer& g, std::size_t pixel) {
 
 /// Opaque scene behind and between the strands, by primary rays. Samples of a pixel that see the same surface share a color.
 struct OpaqueLayer {
+  static constexpr std::uint8_t kNone = 0xff;
   int width = 0, height = 0, samples = 1;
-  Buffer<float> depth;          ///< [h·w·samples] camera z, metres; +inf where nothing is hit
+  Buffer<float> depth;          ///< [h·w·samples] camera z, metres; +inf where nothing is hit. Read by raster alone
   Buffer<std::uint32_t> first;  ///< [h·w] where the colors of a pixel's samples begin in `color`
-  Buffer<std::uint8_t> shade;   ///< [h·w·samples] the sample's color, counted from there; any where nothing is hit
+  Buffer<std::uint8_t> shade;   ///< [h·w·samples] the sample's color, counted from there; kNone where nothing is hit
   Buffer<Vec3> color;           ///< shaded linear radiance of every distinct surface of every pixel
 };
 
 /// Radiance of sample `sample` (numbered through all pixels); 0 where nothing is hit.
 inline Vec3 opaque_color(const OpaqueLayer& layer, std::size_t sample) {
-  if (!(layer.depth[sample] < INFINITY)) return {0, 0, 0};
+  if (layer.shade[sample] == OpaqueLayer::kNone) return {0, 0, 0};
   return layer.color[layer.first[sample / static_cast<std::size_t>(layer.samples)] + layer.shade[sample]];
 }
 

@@ -106,7 +106,7 @@ void trace_pixel(const Scene& scene, const CameraView& view, std::span<const Vec
   std::array<Shading, kMaxSamples> shaded;
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    depth[i] = hits[i].distance, shade[i] = 0;
+    depth[i] = hits[i].distance, shade[i] = OpaqueLayer::kNone;
     if (hits[i].mesh == RayHit::kNone) continue;
     const Shading s = shading_at(scene, meshes, rays[i], hits[i]);
     std::size_t k = 0;

@@ -19,12 +19,14 @@ struct Gather {
   const CameraView& view;
   const SegmentNumbering& numbering;
   std::span<const Vec2> sample_positions;
+  const Buffer<PixelKey>& keys;  ///< of all pixels, as many adjacent ones as there are positions
 };
 
-Vec2 screen_place(const Gather& g, const VisibleSample& s) {
-  const std::uint32_t width = static_cast<std::uint32_t>(g.view.width);
-  const Vec2 in_pixel = g.sample_positions[s.sample];
-  return {static_cast<float>(s.pixel % width) + in_pixel.x, static_cast<float>(s.pixel / width) + in_pixel.y};
+Vec2 screen_place(const Gather& g, std::uint32_t key) {
+  const auto width = static_cast<std::uint32_t>(g.view.width), samples = static_cast<std::uint32_t>(g.sample_positions.size());
+  const std::uint32_t pixel = key / samples;
+  const Vec2 in_pixel = g.sample_positions[key % samples];
+  return {static_cast<float>(pixel % width) + in_pixel.x, static_cast<float>(pixel / width) + in_pixel.y};
 }
 
 Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
@@ -32,9 +34,9 @@ Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
   return normalize(transform_vector(view.camera_to_world, {0, 0, -1}));
 }
 
-void gather_lane(const Gather& g, const VisibleSample& sample, const SegmentRef& segment, ShadeBatch& batch, std::size_t i) {
+void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, ShadeBatch& batch, std::size_t i) {
   const GroomInstance& groom = g.scene.grooms[segment.groom];
-  const Vec2 at = screen_place(g, sample);
+  const Vec2 at = screen_place(g, key);
   const float t = locate_on_segment(g.scene, g.numbering, g.view, segment, at.x, at.y);
   const StrandSurface s = surface_at(g.scene, g.numbering, segment, t);
   const Vec3 to_eye = direction_to_eye(g.view, s.position);
@@ -52,14 +54,14 @@ void pad(ShadeBatch& batch) {
     std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
 }
 
-/// Shades `samples`, at most ShadeBatch::kSize of them, groom by groom.
-void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, std::span<const VisibleSample> samples,
+/// Shades what the keys at `visible` show, at most ShadeBatch::kSize of them, groom by groom.
+void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, std::span<const std::uint32_t> visible,
                  Evaluator evaluator, ShadeBatch& batch, Vec3* color) {
   std::array<SegmentRef, ShadeBatch::kSize> segments;
   std::array<std::uint32_t, ShadeBatch::kSize> pending, left, taken;
-  std::size_t pending_count = samples.size();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    segments[i] = find_segment(g.scene, g.numbering, static_cast<std::uint32_t>(samples[i].key));
+  std::size_t pending_count = visible.size();
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    segments[i] = find_segment(g.scene, g.numbering, static_cast<std::uint32_t>(g.keys[visible[i]]));
     pending[i] = static_cast<std::uint32_t>(i);
   }
   while (pending_count > 0) {
@@ -72,7 +74,7 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
         left[left_count++] = i;
         continue;
       }
-      gather_lane(g, samples[i], segments[i], batch, batch.count);
+      gather_lane(g, visible[i], segments[i], batch, batch.count);
       taken[batch.count++] = i;
     }
     pad(batch);
@@ -98,15 +100,15 @@ Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& v
   VisibleList list = list_visible({keys.data(), keys.size()}, samples);
   Radiance radiance;
   radiance.index = std::move(list.index);
-  radiance.color.resize(list.samples.size());
+  radiance.color.resize(list.first.size());
 
-  const Gather gather{scene, view, numbering, sample_positions};
+  const Gather gather{scene, view, numbering, sample_positions, keys};
   std::vector<ShadeConstants> constants;
   for (const GroomInstance& groom : scene.grooms)
     constants.push_back(shade_constants(groom.material, scene.settings.dual_scattering, rig));
-  parallel_for(list.samples.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
+  parallel_for(list.first.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
     ShadeBatch batch;
-    shade_block(gather, constants, {list.samples.data() + begin, end - begin}, evaluator, batch, radiance.color.data() + begin);
+    shade_block(gather, constants, {list.first.data() + begin, end - begin}, evaluator, batch, radiance.color.data() + begin);
   });
   return radiance;
 }

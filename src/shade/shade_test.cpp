@@ -284,10 +284,8 @@ TEST(VisibleList, OneEntryPerSegmentAndPixel) {
                                       kEmptyPixel, kEmptyPixel, kEmptyPixel, kEmptyPixel,
                                       key(1, 1),   key(1, 1),   key(1, 1),   key(2, 1)};
   const VisibleList list = list_visible(keys, 4);
-  ASSERT_EQ(list.samples.size(), 3u);
-  EXPECT_EQ(list.samples[0].key, key(5, 1));
-  EXPECT_EQ(list.samples[1].sample, 1u);
-  EXPECT_EQ(list.samples[2].pixel, 2u);
+  const std::vector<std::uint32_t> first(list.first.begin(), list.first.end());
+  EXPECT_EQ(first, (std::vector<std::uint32_t>{0, 1, 8}));
   const std::vector<std::uint32_t> index(list.index.begin(), list.index.end());
   const std::uint32_t none = Radiance::kNone;
   EXPECT_EQ(index, (std::vector<std::uint32_t>{0, 1, 0, none, none, none, none, none, 2, 2, 2, 2}));

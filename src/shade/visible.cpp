@@ -33,6 +33,7 @@ VisibleList list_visible(std::span<const PixelKey> keys, int samples_per_pixel) 
   const std::size_t n = static_cast<std::size_t>(samples_per_pixel), pixels = keys.size() / n;
   PELAGE_CHECK(n >= 1 && n <= kMaxSamplesPerPixel);
   PELAGE_CHECK_EQ(pixels * n, keys.size());
+  PELAGE_CHECK_LT(keys.size(), std::size_t{Radiance::kNone});
   std::vector<std::size_t> first((pixels + kPixelsPerTask - 1) / kPixelsPerTask + 1);
   parallel_for(pixels, kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
@@ -40,10 +41,9 @@ VisibleList list_visible(std::span<const PixelKey> keys, int samples_per_pixel) 
     first[begin / kPixelsPerTask + 1] = count;
   });
   for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
-  PELAGE_CHECK_LT(first.back(), std::size_t{Radiance::kNone});
 
   VisibleList list;
-  list.samples.resize(first.back()), list.index.resize(keys.size());
+  list.first.resize(first.back()), list.index.resize(keys.size());
   parallel_for(pixels, kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
     std::size_t next = first[begin / kPixelsPerTask];
     for (std::size_t p = begin; p < end; ++p) {
@@ -54,7 +54,7 @@ VisibleList list_visible(std::span<const PixelKey> keys, int samples_per_pixel) 
         if (pixel[i] == kEmptyPixel) continue;
         const std::size_t k = first_alike(pixel, i);
         if (k == i) {
-          list.samples[next] = {static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(i), pixel[i]};
+          list.first[next] = static_cast<std::uint32_t>(p * n + i);
           index[i] = static_cast<std::uint32_t>(next++);
         } else {
           index[i] = index[k];

@@ -10,16 +10,9 @@
 
 namespace pelage {
 
-/// A distinct segment of a pixel, at the first of its samples that sees it.
-struct VisibleSample {
-  std::uint32_t pixel;   ///< y·width + x
-  std::uint32_t sample;  ///< index of the sample position
-  PixelKey key;
-};
-
 struct VisibleList {
-  Buffer<VisibleSample> samples;  ///< ordered by pixel, then by sample
-  Buffer<std::uint32_t> index;    ///< [keys] Radiance::index: which of `samples` a key shows; Radiance::kNone for none
+  Buffer<std::uint32_t> first;  ///< of each distinct segment of each pixel: the first key that shows it; increasing
+  Buffer<std::uint32_t> index;  ///< [keys] Radiance::index: which of `first` a key shows; Radiance::kNone for none
 };
 
 /// Lists `keys`, the layer of pixels with `samples_per_pixel` adjacent keys each. O(keys), in parallel: counts per block
