@@ -15,4 +15,4 @@ install(EXPORT PelageTargets NAMESPACE Pelage:: DESTINATION ${PELAGE_PACKAGE_DIR
 configure_package_config_file(cmake/PelageConfig.cmake.in PelageConfig.cmake INSTALL_DESTINATION ${PELAGE_PACKAGE_DIR})
 write_basic_package_version_file(PelageConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/PelageConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/PelageConfigVersion.cmake
-              cmake/FindOpenImageIO.cmake DESTINATION ${PELAGE_PACKAGE_DIR})
+              cmake/FindOpenEXR.cmake DESTINATION ${PELAGE_PACKAGE_DIR})

@@ -30,7 +30,7 @@ function(pelage_test name)
   pelage_ease_sanitizers(${name}_test ${sources})
   target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name}_test PRIVATE pelage pelage_options GTest::gmock GTest::gtest_main TBB::tbb hwy::hwy
-                                             fmt::fmt embree OpenImageIO::OpenImageIO nlohmann_json::nlohmann_json)
+                                             fmt::fmt embree JPEG::JPEG nlohmann_json::nlohmann_json)
   target_compile_definitions(${name}_test PRIVATE PELAGE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   add_test(NAME ${name} COMMAND ${name}_test)
   set_tests_properties(${name} PROPERTIES ENVIRONMENT "PELAGE_DATA=${PELAGE_DATA}" TIMEOUT 300)

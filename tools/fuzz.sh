@@ -9,7 +9,8 @@ CXX=${CXX:-clang++-14} cmake --preset fuzz > /dev/null
 cmake --build --preset fuzz --target fuzzers
 build=build/fuzz
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(cyhair pelage tressfx tressfx3 usc mesh_obj mesh_ply mesh_glb mesh_tfxmesh scene image_png)
+[ ${#targets[@]} -gt 0 ] || targets=(cyhair pelage tressfx tressfx3 usc mesh_obj mesh_ply mesh_glb mesh_tfxmesh scene
+                               image_png image_jpeg image_exr image_hdr)
 $build/tests/fuzz/fuzz_corpus $build/corpus
 mkdir -p $build/findings
 status=0

@@ -3,7 +3,7 @@
 
 # To build the library and the command.
 PELAGE_BUILD_PACKAGES="g++ cmake ninja-build
-  libtbb-dev libhwy-dev libfmt-dev libembree-dev libopenimageio-dev libpng-dev nlohmann-json3-dev libcli11-dev zlib1g-dev"
+  libtbb-dev libhwy-dev libfmt-dev libembree-dev libopenexr-dev libpng-dev libjpeg-dev nlohmann-json3-dev libcli11-dev zlib1g-dev"
 
 # To run the tests: test frameworks, lints, the software Vulkan driver that stands in for a GPU, a browser.
 PELAGE_TEST_PACKAGES="libgtest-dev libgmock-dev python3 clang-format

@@ -4,7 +4,12 @@
 #include <pelage/io.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include <jpeglib.h>
 
 #include "kit/io_kit.h"
 
@@ -82,6 +87,48 @@ TEST(Images, PngClampsAndHdrHoldsLargeValues) {
   const Image back = read_image(folder / "a.hdr");
   EXPECT_NEAR(back.pixels[0], 3000, 3000 / 128.);
   EXPECT_NEAR(back.pixels[1], 1500, 3000 / 128.);
+}
+
+TEST(Images, ExrChannelsComeInTheirUsualOrderLayerByLayer) {
+  const TemporaryFolder folder;
+  Image image = pattern({"tangent.y", "id", "A", "B", "tangent.x", "R", "Z", "G", "below.A", "below.R"});
+  write_image(folder / "a.exr", image, true);
+  const Image back = read_image(folder / "a.exr");
+  EXPECT_EQ(back.channels,
+            (std::vector<std::string>{"R", "G", "B", "A", "Z", "id", "below.R", "below.A", "tangent.x", "tangent.y"}));
+  const std::vector<std::size_t> from = {5, 7, 3, 2, 6, 1, 9, 8, 4, 0};
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    ASSERT_EQ(back.pixels[i], image.pixels[i / 10 * 10 + from[i % 10]]) << i;
+}
+
+TEST(Images, HdrKeepsEightBitsOfTheLargestColor) {
+  const TemporaryFolder folder;
+  for (const int width : {1, 7, 8, 300}) {  // in runs from 8 on
+    Image image(width, 3, {"R", "G", "B"});
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      image.pixels[i] = i % 5 < 3 ? 0.3f : std::ldexp(static_cast<float>(i * 37 % 101), static_cast<int>(i % 30) - 15);
+    write_image(folder / "a.hdr", image);
+    const Image back = read_image(folder / "a.hdr");
+    ASSERT_EQ(back.pixels.size(), image.pixels.size());
+    for (std::size_t p = 0; p < image.pixels.size(); p += 3) {
+      const float largest = std::max({image.pixels[p], image.pixels[p + 1], image.pixels[p + 2]});
+      for (std::size_t c = 0; c < 3; ++c)
+        ASSERT_NEAR(back.pixels[p + c], image.pixels[p + c], largest / 128) << width << " " << p;
+    }
+  }
+}
+
+TEST(Images, HdrTakesWhatItCannotHold) {
+  const TemporaryFolder folder;
+  Image image(2, 2, {"R", "G", "B"});
+  image.pixels = {NAN, -1, 1, INFINITY, 0, 1, 1e-38f, 1e-38f, 0, 3e38f, 3e38f, 1};
+  write_image(folder / "a.hdr", image);
+  const Image back = read_image(folder / "a.hdr");
+  EXPECT_EQ(back.pixels[0], 0);
+  EXPECT_EQ(back.pixels[1], 0);
+  EXPECT_EQ(back.pixels[2], 1);
+  for (const std::size_t bright : {3u, 9u, 10u}) EXPECT_NEAR(back.pixels[bright], 0x1p127f, 0x1p120f);
+  for (const std::size_t dark : {4u, 5u, 6u, 7u, 8u, 11u}) EXPECT_EQ(back.pixels[dark], 0) << dark;
 }
 
 TEST(Images, SameBytesEveryTime) {
@@ -245,14 +292,126 @@ TEST(Images, APngThatCannotHoldItsPixelsIsRefusedBeforeMemoryIsAskedFor) {
   EXPECT_THROW(read_bytes(png(65537, 1, 1, 0, "", "\0")), Error);
 }
 
+// Radiance pictures made by hand: what no writer of ours makes.
+
+Image read_hdr_text(const std::string& header, const std::string& pixels) {
+  const TemporaryFolder folder;
+  kit::spill(folder / "a.hdr", "#?RADIANCE\n" + header + "\n" + pixels);
+  return read_image(folder / "a.hdr");
+}
+
+TEST(Images, HdrOfWholePixelsAndTheirRepetitions) {
+  const std::string pixel("\x80\x40\x20\x81", 4);  // 1, ½, ¼
+  const Image flat = read_hdr_text("FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2", pixel + std::string("\0\0\x80\x82", 4));
+  EXPECT_EQ(flat.pixels, (std::vector<float>{1, 0.5f, 0.25f, 0, 0, 2}));
+  const Image wide = read_hdr_text("\n-Y 1 +X 700", pixel + std::string("\1\1\1\xbb\1\1\1\2", 8));  // 1 + 187 + 2·256
+  for (std::size_t i = 0; i < wide.pixels.size(); ++i) ASSERT_EQ(wide.pixels[i], flat.pixels[i % 3]) << i;
+}
+
+TEST(Images, HdrExposuresAreTakenBack) {
+  const std::string pixel("\x80\x40\x20\x81", 4);
+  EXPECT_EQ(read_hdr_text("EXPOSURE=2\nEXPOSURE= 4\n\n-Y 1 +X 1", pixel).pixels,
+            (std::vector<float>{1 / 8.f, 1 / 16.f, 1 / 32.f}));
+}
+
+TEST(Images, HdrThatLies) {
+  const std::string pixel("\x80\x40\x20\x81", 4);
+  const auto expect = [&](const std::string& header, const std::string& pixels, const char* problem) {
+    try {
+      read_hdr_text(header, pixels);
+      ADD_FAILURE() << problem;
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), testing::HasSubstr(problem));
+    }
+  };
+  expect("\n-Y 65536 +X 65536", pixel, "cannot be in");
+  expect("\n-Y 0 +X 1", pixel, "0 pixels");
+  expect("\n+Y 1 +X 1", pixel, "top to bottom");
+  expect("\n-Y 1 -X 1", pixel, "left to right");
+  expect("FORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1", pixel, "xyze");
+  expect("EXPOSURE=0\n\n-Y 1 +X 1", pixel, "not positive");
+  expect("\n-Y 1 +X 2", pixel + std::string("\1\1\1\2", 4), "over the end of its row");
+  expect("\n-Y 1 +X 2", std::string("\1\1\1\1", 4) + pixel, "over the end of its row");
+  expect("\n-Y 1 +X 9", std::string("\2\2\0\x09\x8a\5", 6), "over the end of its row");
+  expect("\n-Y 1 +X 2", pixel, "ends early");
+}
+
+// A JPEG file of the library itself.
+std::string jpeg(const std::vector<unsigned char>& pixels, unsigned width, int channels) {
+  jpeg_compress_struct jpeg;
+  jpeg_error_mgr errors;
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&jpeg);
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &data, &size);
+  jpeg.image_width = width;
+  jpeg.image_height = static_cast<unsigned>(pixels.size()) / width / static_cast<unsigned>(channels);
+  jpeg.input_components = channels;
+  jpeg.in_color_space = channels == 1 ? JCS_GRAYSCALE : channels == 3 ? JCS_RGB : JCS_CMYK;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_quality(&jpeg, 100, TRUE);
+  jpeg_start_compress(&jpeg, TRUE);
+  while (jpeg.next_scanline < jpeg.image_height) {
+    JSAMPROW row =
+        const_cast<JSAMPROW>(pixels.data() + std::size_t{jpeg.next_scanline} * width * static_cast<std::size_t>(channels));
+    jpeg_write_scanlines(&jpeg, &row, 1);
+  }
+  jpeg_finish_compress(&jpeg);
+  jpeg_destroy_compress(&jpeg);
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  std::free(data);
+  return bytes;
+}
+
+TEST(Images, JpegOfGrayAndOfColors) {
+  const TemporaryFolder folder;
+  for (const int channels : {1, 3}) {
+    std::vector<unsigned char> pixels(static_cast<std::size_t>(24 * 10 * channels));
+    for (std::size_t i = 0; i < pixels.size(); ++i)  // smooth, because colors are stored coarsely
+      pixels[i] = static_cast<unsigned char>(20 * (i % static_cast<std::size_t>(channels)) +
+                                             i / static_cast<std::size_t>(channels) / 2);
+    kit::spill(folder / "a.jpg", jpeg(pixels, 24, channels));
+    const Image image = read_image(folder / "a.jpg", false);
+    EXPECT_EQ(image.width, 24);
+    EXPECT_EQ(image.channels, channels == 1 ? (std::vector<std::string>{"Y"}) : (std::vector<std::string>{"R", "G", "B"}));
+    ASSERT_EQ(image.pixels.size(), pixels.size());
+    for (std::size_t i = 0; i < pixels.size(); ++i) ASSERT_NEAR(image.pixels[i] * 255, static_cast<float>(pixels[i]), 6) << i;
+    EXPECT_NEAR(read_image(folder / "a.jpg").pixels[0], std::pow((image.pixels[0] + 0.055f) / 1.055f, 2.4f), 0.005f);
+  }
+}
+
+TEST(Images, ACutJpegIsAnErrorAndNothingIsPrinted) {
+  const TemporaryFolder folder;
+  const std::string whole = jpeg(std::vector<unsigned char>(16 * 16 * 3, 77), 16, 3);
+  testing::internal::CaptureStderr();
+  for (std::size_t n = 0; n + 2 < whole.size(); ++n) {  // the marker of the end may be missing
+    kit::spill(folder / "a.jpg", whole.substr(0, n));
+    EXPECT_THROW(read_image(folder / "a.jpg"), Error) << n << " of " << whole.size() << " bytes";
+  }
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << at % 8));
+    kit::spill(folder / "a.jpg", damaged);
+    try {
+      read_image(folder / "a.jpg");
+    } catch (const Error& e) {
+      EXPECT_EQ(e.where(), folder / "a.jpg") << "byte " << at;
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  kit::spill(folder / "ink.jpg", jpeg(std::vector<unsigned char>(8 * 8 * 4, 77), 8, 4));
+  EXPECT_THROW(read_image(folder / "ink.jpg"), Error);
+}
+
 TEST(Images, OnlyPicturesAreOffered) {
   const TemporaryFolder folder;
-  kit::spill(folder / "a.png", "P6 1 1 255 abc");  // a format that OpenImageIO reads too
+  kit::spill(folder / "a.png", "P6 1 1 255 abc");
   try {
     read_image(folder / "a.png");
     FAIL();
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("EXR, PNG and Radiance HDR are read"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("EXR, PNG, JPEG and Radiance HDR are read"));
   }
 }
 

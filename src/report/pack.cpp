@@ -1,6 +1,6 @@
 #include "report/pack.h"
 
-#include <OpenImageIO/imageio.h>
+#include <half.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -22,11 +22,9 @@ std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
 }
 
 std::vector<std::uint16_t> halves(const std::vector<float>& values) {
-  std::vector<float> clamped(values.size());
-  std::transform(values.begin(), values.end(), clamped.begin(), [](float x) { return std::clamp(x, -kMostHalf, kMostHalf); });
   std::vector<std::uint16_t> out(values.size());
-  OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, clamped.data(), OIIO::TypeDesc::HALF, out.data(),
-                             static_cast<int>(values.size()));
+  std::transform(values.begin(), values.end(), out.begin(),
+                 [](float x) { return half(std::clamp(x, -kMostHalf, kMostHalf)).bits(); });
   return out;
 }
 

@@ -104,5 +104,9 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i % 7) / 7;
   write_image(folder("image_png") + "small.png", image);
   write_image(folder("image_png") + "sixteen.png", image, true);
+  write_image(folder("image_exr") + "half.exr", image);
+  write_image(folder("image_exr") + "float.exr", image, true);
+  write_image(folder("image_hdr") + "runs.hdr", Image(9, 2, {"R", "G", "B"}));
+  spill(folder("image_hdr") + "repeated", std::string("#?RADIANCE\nEXPOSURE=2\n\n-Y 2 +X 2\n\x80\x40\x20\x81\1\1\1\3", 47));
   return 0;
 }

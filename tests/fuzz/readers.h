@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/image_png.h"
+#include "io/image_formats.h"
 #include "io/mesh_formats.h"
 #include "io/scene_tables.h"
 #include "io/strand_registry.h"
@@ -86,11 +86,36 @@ inline void read_png(std::span<const std::byte> bytes) {
   }
 }
 
+inline void read_jpeg(std::span<const std::byte> bytes) {
+  try {
+    io::read_jpeg(io::ByteSource("fuzz", bytes));
+  } catch (const Error&) {
+  }
+}
+
+inline void read_exr(std::span<const std::byte> bytes) {
+  try {
+    io::read_exr(io::ByteSource("fuzz", bytes));
+  } catch (const Error&) {
+  }
+}
+
+inline void read_hdr(std::span<const std::byte> bytes) {
+  try {
+    for (const float x : io::read_hdr(io::ByteSource("fuzz", bytes)).pixels)
+      if (!(x >= 0)) std::abort();
+  } catch (const Error&) {
+  }
+}
+
 /// Calls the reader for a corpus file named `<reader>-<anything>`.
 inline void replay(std::string_view name, std::span<const std::byte> bytes) {
   if (name.starts_with("mesh")) read_mesh(bytes);
   else if (name.starts_with("scene")) read_scene(bytes);
   else if (name.starts_with("image_png")) read_png(bytes);
+  else if (name.starts_with("image_jpeg")) read_jpeg(bytes);
+  else if (name.starts_with("image_exr")) read_exr(bytes);
+  else if (name.starts_with("image_hdr")) read_hdr(bytes);
   else read_groom(bytes);
 }
 

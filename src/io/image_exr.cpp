@@ -1,0 +1,220 @@
+// OpenEXR files through the OpenEXR library, from and to memory: the file system's errors stay ours to report.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <fmt/format.h>
+#include <half.h>
+#include <pelage/error.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "io/image_formats.h"
+
+namespace pelage::io {
+namespace {
+
+class MemoryInput : public Imf::IStream {
+ public:
+  MemoryInput(const std::string& name, const std::vector<char>& bytes) : IStream(name.c_str()), bytes_(bytes) {}
+
+  bool read(char target[], int count) override {
+    const auto n = static_cast<std::uint64_t>(count);
+    if (at_ > bytes_.size() || n > bytes_.size() - at_) throw std::runtime_error("the file ends early");
+    std::memcpy(target, bytes_.data() + at_, n);
+    at_ += n;
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t position) override { at_ = position; }
+
+ private:
+  const std::vector<char>& bytes_;
+  std::uint64_t at_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+ public:
+  explicit MemoryOutput(const std::string& name) : OStream(name.c_str()) {}
+
+  void write(const char data[], int count) override {
+    const auto n = static_cast<std::size_t>(count);
+    bytes_.resize(std::max(bytes_.size(), at_ + n));
+    std::memcpy(bytes_.data() + at_, data, n);
+    at_ += n;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t position) override { at_ = position; }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+// Every attribute of the headers must be inside the file: the library asks for its memory before it reads it.
+//   header: { name \0 type \0 size data }… \0; the list of headers of a file of several parts ends with an empty one
+class HeaderCheck {
+ public:
+  HeaderCheck(const ByteSource& source, const std::vector<char>& bytes) : source_(source), bytes_(bytes) {}
+
+  void run() {
+    constexpr std::uint32_t kSeveralParts = 0x1000;
+    at_ = 4;
+    const bool several = number() & kSeveralParts;
+    while (attributes() > 0 && several) {
+    }
+  }
+
+ private:
+  std::size_t attributes() {
+    std::size_t count = 0;
+    for (; !text().empty(); ++count) {
+      text();
+      const std::size_t size = number();
+      if (size > bytes_.size() - at_) fail();
+      at_ += size;
+    }
+    return count;
+  }
+  std::string_view text() {
+    const auto* const end = static_cast<const char*>(std::memchr(bytes_.data() + at_, 0, bytes_.size() - at_));
+    if (!end) fail();
+    const std::string_view found(bytes_.data() + at_, end);
+    at_ += found.size() + 1;
+    return found;
+  }
+  std::uint32_t number() {
+    if (bytes_.size() - at_ < 4) fail();
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes_[at_ + i]);
+    at_ += 4;
+    return value;
+  }
+  [[noreturn]] void fail() const {
+    throw Error(source_.name(), fmt::format("byte {}", at_), "the header ends early", "the file is truncated or damaged");
+  }
+
+  const ByteSource& source_;
+  const std::vector<char>& bytes_;
+  std::size_t at_ = 0;
+};
+
+// Read by itself before the file is opened, which would ask for memory on the word of its numbers.
+Imf::Header read_header(MemoryInput& input) {
+  Imf::Header header;
+  std::array<unsigned char, 8> start;  // magic number, version
+  input.read(reinterpret_cast<char*>(start.data()), static_cast<int>(start.size()));
+  int version = start[4] | start[5] << 8 | start[6] << 16;
+  header.readFrom(input, version);
+  input.seekg(0);
+  return header;
+}
+
+void check_header(const ByteSource& source, const Imf::Header& header) {
+  const Imath::Box2i& window = header.dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  std::uint64_t channels = 0;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    ++channels;
+    if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
+      throw Error(source.name(), c.name(), "a channel of lower resolution", "convert it to channels of one size");
+  }
+  check_image_size(source, width, height, channels);
+}
+
+// Channels stand in the file by name, "A" before "B": colors are put into their usual order.
+std::vector<std::string> ordered_channels(const Imf::ChannelList& channels) {
+  const auto layer = [](std::string_view name) { return name.substr(0, name.find_last_of('.') + 1); };
+  const auto rank = [&](std::string_view name) {
+    constexpr std::string_view kFirst[] = {"R", "G", "B", "A", "Z"};
+    const std::string_view own = name.substr(layer(name).size());
+    return std::find(std::begin(kFirst), std::end(kFirst), own) - std::begin(kFirst);
+  };
+  std::vector<std::string> names;
+  for (auto c = channels.begin(); c != channels.end(); ++c) names.emplace_back(c.name());
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return layer(a) != layer(b) ? layer(a) < layer(b) : rank(a) < rank(b);
+  });
+  return names;
+}
+
+/// Slices of interleaved pixels of type T; `first` is channel 0 of the picture's first pixel, which has the coordinates of
+/// `origin`.
+template <class T>
+Imf::FrameBuffer interleaved(const std::vector<std::string>& channels, Imf::PixelType type, T* first, std::size_t width,
+                             Imath::V2i origin) {
+  const std::size_t pixel = channels.size() * sizeof(T), row = pixel * width;
+  Imf::FrameBuffer buffer;
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    // The library wants the address that pixel (0, 0) would have, which may be none of ours: no pointer arithmetic.
+    buffer.insert(channels[c], Imf::Slice(type,
+                                          reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first + c) -
+                                                                  static_cast<std::uintptr_t>(origin.x) * pixel -
+                                                                  static_cast<std::uintptr_t>(origin.y) * row),
+                                          pixel, row));
+  return buffer;
+}
+
+template <class T>
+void write_pixels(Imf::OutputFile& file, const Image& image, Imf::PixelType type, T* pixels) {
+  file.setFrameBuffer(interleaved(image.channels, type, pixels, static_cast<std::size_t>(image.width), {0, 0}));
+  file.writePixels(image.height);
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+Image read_exr(const ByteSource& source) {
+  const std::vector<char> bytes = source.read_all();
+  HeaderCheck(source, bytes).run();
+  try {
+    MemoryInput input(source.name(), bytes);
+    check_header(source, read_header(input));
+    Imf::InputFile file(input);
+    const Imath::Box2i& window = file.header().dataWindow();
+    Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, ordered_channels(file.header().channels()));
+    file.setFrameBuffer(
+        interleaved(image.channels, Imf::FLOAT, image.pixels.data(), static_cast<std::size_t>(image.width), window.min));
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(source.name(), "", first_line(e.what()), "the file is truncated or damaged");
+  }
+}
+
+std::string encode_exr(const std::string& name, const Image& image, bool full_float) {
+  try {
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    const Imf::PixelType type = full_float ? Imf::FLOAT : Imf::HALF;
+    for (const std::string& channel : image.channels) header.channels().insert(channel, Imf::Channel(type));
+    MemoryOutput output(name);
+    {
+      Imf::OutputFile file(output, header);  // complete when it goes
+      if (full_float) {
+        write_pixels(file, image, type, const_cast<float*>(image.pixels.data()));  // the library only reads
+      } else {
+        std::vector<half> halves(image.pixels.begin(), image.pixels.end());
+        write_pixels(file, image, type, halves.data());
+      }
+    }
+    return output.take();
+  } catch (const std::exception& e) {
+    throw Error(name, "", first_line(e.what()), "");
+  }
+}
+
+}  // namespace pelage::io
