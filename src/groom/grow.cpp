@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "groom/mannequin.h"
 #include "groom/strands.h"
@@ -11,7 +12,9 @@
 namespace pelage {
 namespace {
 
-void check_range(const char* name, double value, double low, double high) {
+// Compared in the value's own type: the float nearest to 0.05 lies inside a range that ends there.
+template <class T>
+void check_range(const char* name, T value, std::type_identity_t<T> low, std::type_identity_t<T> high) {
   if (!(value >= low && value <= high))
     throw Error("grow", name, fmt::format("{} is outside {} … {}", value, low, high), "choose a value in that range");
 }
@@ -20,21 +23,21 @@ void check(const GrowSettings& s) {
   check_range("strands", s.strands, 1, 1000000);
   check_range("points", s.points, 4, 1024);
   check_range("strands × points", static_cast<double>(s.strands) * s.points, 4, 4294967295.0);
-  check_range("length", static_cast<double>(s.length), 1e-4, 10);
-  check_range("length_variation", static_cast<double>(s.length_variation), 0, 0.5);
-  check_range("width", static_cast<double>(s.width), 0, 0.1);
-  check_range("width_variation", static_cast<double>(s.width_variation), 0, 0.5);
-  check_range("taper", static_cast<double>(s.taper), 0, 1);
-  check_range("curl_radius", static_cast<double>(s.curl_radius), 0, 1);
-  check_range("curl_pitch", static_cast<double>(s.curl_pitch), 1e-4, 10);
+  check_range("length", s.length, 1e-4f, 10);
+  check_range("length_variation", s.length_variation, 0, 0.5f);
+  check_range("width", s.width, 0, 0.1f);
+  check_range("width_variation", s.width_variation, 0, 0.5f);
+  check_range("taper", s.taper, 0, 1);
+  check_range("curl_radius", s.curl_radius, 0, 1);
+  check_range("curl_pitch", s.curl_pitch, 1e-4f, 10);
   check_range("clumps", s.clumps, 0, 1000000);
-  check_range("clump_tightness", static_cast<double>(s.clump_tightness), 0, 1);
-  check_range("frizz", static_cast<double>(s.frizz), 0, 1);
-  check_range("flyaways", static_cast<double>(s.flyaways), 0, 1);
-  check_range("gravity", static_cast<double>(s.gravity), 0, 1);
-  check_range("volume", static_cast<double>(s.volume), 0, 0.5);
-  check_range("parting", static_cast<double>(s.parting), -0.05, 0.05);
-  check_range("undercoat", static_cast<double>(s.undercoat), 0, 1);
+  check_range("clump_tightness", s.clump_tightness, 0, 1);
+  check_range("frizz", s.frizz, 0, 1);
+  check_range("flyaways", s.flyaways, 0, 1);
+  check_range("gravity", s.gravity, 0, 1);
+  check_range("volume", s.volume, 0, 0.5f);
+  check_range("parting", s.parting, -0.05f, 0.05f);
+  check_range("undercoat", s.undercoat, 0, 1);
 }
 
 }  // namespace

@@ -173,12 +173,16 @@ TEST(Grow, StrandsStayOutsideTheHead) {
 }
 
 TEST(Grow, LongHairLeavesTheFaceFree) {
-  for (const HairStyle style : kLongStyles) {
-    const StrandSet hair = grow(small(style, 4000), head());
-    std::size_t in_face = 0;
-    for (const Vec3 p : hair.points) in_face += std::abs(p.x) < 0.045f && p.y > -0.11f && p.y < 0.045f && p.z > 0.07f;
-    EXPECT_LE(static_cast<double>(in_face), 1e-3 * static_cast<double>(hair.point_count())) << static_cast<int>(style);
-  }
+  for (const HairStyle style : kLongStyles)
+    for (const float parting : {0.f, -0.05f, 0.05f}) {  // a side parting sends hair over the forehead
+      GrowSettings s = small(style, 4000);
+      s.parting = parting;
+      const StrandSet hair = grow(s, head());
+      std::size_t in_face = 0;
+      for (const Vec3 p : hair.points) in_face += std::abs(p.x) < 0.045f && p.y > -0.11f && p.y < 0.045f && p.z > 0.07f;
+      EXPECT_LE(static_cast<double>(in_face), 1e-3 * static_cast<double>(hair.point_count()))
+          << static_cast<int>(style) << " parted at " << parting;
+    }
 }
 
 TEST(Collide, PushesOutOfTheFaceByItsShare) {
@@ -197,6 +201,24 @@ TEST(Collide, PushesOutOfTheFaceByItsShare) {
     EXPECT_GE(aside.z, temple.z) << "back into the head";
     EXPECT_GE(std::abs(aside.x), std::abs(temple.x));
   }
+}
+
+TEST(Collide, TheShortestWayLeadsOutOfTheFace) {
+  const auto depth = [](Vec3 p) { return length(groom::push_out_of_face(p, 1) - p); };
+  constexpr float kStep = 1e-4f;
+  int near_the_edge = 0;
+  for (float x = -0.1f; x < 0.1f; x += 0.01f)
+    for (float y = -0.2f; y < 0.1f; y += 0.01f)
+      for (float z = 0.15f; z < 0.25f; z += 0.003f) {  // in front of the bulge's middle, where it is an ellipsoid
+        const Vec3 p(x, y, z);
+        if (depth(p) < 2 * kStep || depth(p) > 0.005f) continue;
+        const Vec3 less(depth(p - Vec3(kStep, 0, 0)) - depth(p + Vec3(kStep, 0, 0)),
+                        depth(p - Vec3(0, kStep, 0)) - depth(p + Vec3(0, kStep, 0)),
+                        depth(p - Vec3(0, 0, kStep)) - depth(p + Vec3(0, 0, kStep)));
+        EXPECT_GT(dot(normalize(less), normalize(groom::push_out_of_face(p, 1) - p)), 0.999f);
+        ++near_the_edge;
+      }
+  EXPECT_GT(near_the_edge, 100);
 }
 
 TEST(Grow, LengthsAndWidthsMatchTheSettings) {

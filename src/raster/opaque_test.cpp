@@ -156,6 +156,59 @@ TEST(Opaque, SamplesThreadsAndMisses) {
   EXPECT_TRUE(trace(scene, rig).color.empty());
 }
 
+/// Samples of a pixel may share a shade, but each must look as if it had been traced alone.
+void expect_each_sample_as_if_alone(const Scene& scene, const LightRig& rig, float tolerance) {
+  constexpr std::size_t kSamples = 8;
+  const CameraView view = make_camera_view(scene.camera, scene.settings.width, scene.settings.height);
+  const auto positions = sample_positions(static_cast<int>(kSamples));
+  const MeshTracer meshes(scene.meshes);
+  const OpaqueLayer shared = trace_opaque(scene, view, {positions.data(), kSamples}, meshes, rig);
+  std::size_t mixed = 0;  // pixels whose samples differ
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const OpaqueLayer alone = trace_opaque(scene, view, {positions.data() + i, 1}, meshes, rig);
+    for (std::size_t p = 0; p < alone.depth.size(); ++p) {
+      const std::size_t s = p * kSamples + i;
+      ASSERT_EQ(shared.depth[s], alone.depth[p]);
+      ASSERT_LE(length(opaque_color(shared, s) - opaque_color(alone, p)), tolerance) << "sample " << i << " of pixel " << p;
+      mixed += length(opaque_color(shared, s) - opaque_color(shared, p * kSamples)) > 10 * tolerance;
+    }
+  }
+  EXPECT_GT(mixed, 10u);
+}
+
+TEST(Opaque, NeighboringMaterialsShareNoShade) {
+  Scene scene = wall_scene();
+  scene.meshes[0] = wall({-4.98f, 0, -1}, 5), scene.meshes.push_back(wall({5.02f, 0, -1}, 5));
+  scene.meshes[1].color = {0.1f, 0.6f, 0.9f};
+  expect_each_sample_as_if_alone(scene, rig_of(directional({0.2f, -0.4f, -1})), 5e-3f);
+}
+
+TEST(Opaque, ACornerSharesNoShade) {
+  Scene scene = wall_scene();
+  auto mesh = std::make_shared<TriangleMesh>();  // two planes that meet in an edge toward the eye
+  mesh->positions = {{0, -9, 0}, {9, -9, -9}, {9, 9, -9}, {0, 9, 0}, {0, -9, 0}, {-9, -9, -9}, {-9, 9, -9}, {0, 9, 0}};
+  mesh->uv.assign(8, {0, 0});
+  mesh->triangles = {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}};
+  scene.meshes[0].mesh = mesh, scene.meshes[0].transform.m[0][3] = 0.02f;
+  scene.camera.eye = {0, 0, 2};
+  expect_each_sample_as_if_alone(scene, rig_of(directional({1, 0, -1})), 1e-2f);
+}
+
+TEST(Opaque, TheEdgeOfANearWallSharesNoShadeWithTheFarOne) {
+  Scene scene = wall_scene();
+  scene.meshes[0].color = {0.5f, 0.5f, 0.5f};
+  auto mesh = std::make_shared<TriangleMesh>(*scene.meshes[0].mesh);  // of one mesh, so of one material
+  const TriangleMesh near = *wall({-0.27f, 0.02f, -0.2f}, 0.25f).mesh;
+  for (const auto& t : near.triangles) mesh->triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+  mesh->positions.insert(mesh->positions.end(), near.positions.begin(), near.positions.end());
+  mesh->uv.insert(mesh->uv.end(), near.uv.begin(), near.uv.end());
+  scene.meshes[0].mesh = mesh;
+  Light light;
+  light.type = Light::Type::kPoint, light.position = {0, 0, 1}, light.intensity = {3, 3, 3};
+  scene.settings.shadows = false;
+  expect_each_sample_as_if_alone(scene, rig_of(light), 1e-2f);
+}
+
 TEST(Opaque, OrthographicDepthIsTheDistanceFromTheEyePlane) {
   Scene scene = wall_scene();
   scene.camera.projection = Camera::Projection::kOrthographic;
