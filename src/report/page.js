@@ -69,7 +69,7 @@ const methodName = name => h("span", { class: "method" }, h("i", { style: `--col
 
 /**
  * columns: [{label, title?, value: row => number or text, cell?: row => node, better?: "higher" | "lower"}]; the best of a
- * column with `better` is marked. A click on a head sorts by it.
+ * column with `better` is marked, with those that look the same, unless all of them do. A click on a head sorts by it.
  */
 function sortableTable(id, columns, rows, { onRow, rowAttributes = () => ({}) } = {}, redraw) {
   const sort = state.sort[id] || { column: -1, down: false };
@@ -84,8 +84,8 @@ function sortableTable(id, columns, rows, { onRow, rowAttributes = () => ({}) } 
     });
   }
   const best = columns.map(c => {
-    const values = c.better ? rows.map(c.value).filter(v => typeof v === "number") : [];
-    return values.length > 1 ? (c.better === "higher" ? Math.max(...values) : Math.min(...values)) : undefined;
+    const values = c.better ? rows.map(c.value).filter(v => typeof v === "number" && !Number.isNaN(v)) : [];
+    return new Set(values.map(shown)).size > 1 ? shown(c.better === "higher" ? Math.max(...values) : Math.min(...values)) : null;
   });
   const head = columns.map((c, i) => h("th", { scope: "col", "aria-sort": sort.column !== i ? "none" : sort.down ? "descending" : "ascending" },
     h("button", { type: "button", title: c.title || null,
@@ -94,7 +94,7 @@ function sortableTable(id, columns, rows, { onRow, rowAttributes = () => ({}) } 
   const body = ranked.map(row => h("tr", { ...rowAttributes(row), onclick: onRow ? () => onRow(row) : () => {} },
     columns.map((c, i) => {
       const value = c.value(row), isText = typeof value === "string";
-      return h("td", { class: [isText ? "text" : "number", best[i] !== undefined && value === best[i] ? "best" : ""].join(" ").trim() },
+      return h("td", { class: [isText ? "text" : "number", !isText && shown(value) === best[i] ? "best" : ""].join(" ").trim() },
                c.cell ? c.cell(row) : isText ? value : shown(value));
     })));
   return h("div", { class: "table-frame" }, h("table", { id }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, body)));
@@ -181,7 +181,7 @@ function axisPlot(cases, axis) {
     label: m.label, color: colorOf(m.name), faint: [],
     points: values.map(v => ({ x: v, y: mean(imagesOf(cases.filter(c => c.axes[axis] === v), m.name).map(({ image }) => measured(image, state.metric))) }))
                   .filter(p => p.y !== null).map(p => ({ ...p, about: `${m.label}, ${axis} ${p.x}: ${metric.label} ${shown(p.y)}` })) }));
-  return plot({ title: `Over ${axis}`, x: { label: axis, words: isNumeric(axis) ? null : values },
+  return plot({ title: `Over ${axis}`, x: { label: axis, words: isNumeric(axis) ? null : values, ticks: values.length <= 8 ? values : null },
                 y: { label: metricName(metric), mayBeLog: !metric.higher }, lines: lines.filter(line => line.points.length) });
 }
 
@@ -228,7 +228,9 @@ function caseMatrix(cases, axes) {
   columns.sort((a, b) => a.reduce((sum, v, i) => sum || order[i].indexOf(v) - order[i].indexOf(b[i]), 0));
   const rows = axisValues(down).filter(v => cases.some(c => c.axes[down] === v));
   const cell = (row, column) => cases.filter(c => c.axes[down] === row && JSON.stringify(key(c)) === JSON.stringify(column));
-  const heads = across.map((axis, level) => h("tr", {}, h("th", {}, level === across.length - 1 ? down : ""),
+  const corner = (axis, isLast) => h("th", { class: "corner" },
+    h("div", {}, h("span", {}, isLast ? `${down} ↓` : ""), h("span", {}, `${axis} →`)));
+  const heads = across.map((axis, level) => h("tr", {}, corner(axis, level === across.length - 1),
     runs(columns.map(c => c.slice(0, level + 1))).map(([words, span]) => h("th", { colspan: span, class: "across" }, String(words.at(-1) ?? "")))));
   const body = rows.map(row => h("tr", {}, h("th", { scope: "row" }, String(row)),
     columns.map(column => h("td", {}, cell(row, column).map(c => caseCard(c, ""))))));

@@ -21,8 +21,9 @@ const shortNumber = x => Math.abs(x) >= 1e5 || (x !== 0 && Math.abs(x) < 1e-3) ?
 
 /** From values to pixels: linear, logarithmic where that tells more, or one step a word. */
 class Scale {
-  constructor(values, from, to, { words = null, mayBeLog = true } = {}) {
+  constructor(values, from, to, { words = null, ticks = null, mayBeLog = true } = {}) {
     this.words = words;
+    this.given = words || ticks;
     this.from = from, this.to = to;
     if (words) return;
     const least = Math.min(...values), most = Math.max(...values);
@@ -39,7 +40,7 @@ class Scale {
     return this.from + share * (this.to - this.from);
   }
   ticks() {
-    if (this.words) return this.words;
+    if (this.given) return this.given;
     return this.log ? this.logTicks() : this.linearTicks();
   }
   logTicks() {
@@ -61,22 +62,30 @@ class Scale {
 const overlap = (a, b) => Math.max(0, Math.min(a.right, b.right) - Math.max(a.left, b.left)) *
                           Math.max(0, Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));
 
-// Puts each label on that side of its point where it covers least of the others and of the points.
+// The places of a label, the nearest to its point first.
+function labelPlaces(p) {
+  const width = 6.3 * p.label.length, places = [];
+  const add = (left, middle) => places.push({ left, right: left + width, top: middle - 7, bottom: middle + 7 });
+  add(p.x + 8, p.y), add(p.x - 8 - width, p.y), add(p.x - width / 2, p.y - 13), add(p.x - width / 2, p.y + 13);
+  for (let dy = 11; dy <= 77; dy += 11)
+    for (const y of [p.y - dy, p.y + dy]) add(p.x + 8 + dy / 4, y), add(p.x - 8 - dy / 4 - width, y);
+  return places;
+}
+
+// Puts each label where it covers least of the others and of the points; a later round knows where the others went.
 function placeLabels(points, area) {
-  const taken = points.map(p => ({ left: p.x - 4, right: p.x + 4, top: p.y - 4, bottom: p.y + 4 }));
-  return points.map(p => {
-    const width = 6.3 * p.label.length;
-    const box = (left, middle) => ({ left, right: left + width, top: middle - 7, bottom: middle + 7 });
-    const choices = [];
-    for (const dy of [0, -11, 11, -20, 20]) choices.push(box(p.x + 8, p.y + dy), box(p.x - 8 - width, p.y + dy));
-    choices.push(box(p.x - width / 2, p.y - 13), box(p.x - width / 2, p.y + 13));
-    const outside = b => Math.max(0, area.left - b.left) + Math.max(0, b.right - area.right) +
-                         Math.max(0, area.top - b.top) + Math.max(0, b.bottom - area.bottom);
-    const cost = (b, i) => taken.reduce((sum, t) => sum + overlap(b, t), 0) + 40 * outside(b) + i;
-    const best = choices.map((b, i) => [cost(b, i), i, b]).sort((a, b) => a[0] - b[0])[0][2];
-    taken.push(best);
-    return { ...p, left: best.left, middle: (best.top + best.bottom) / 2 };
-  });
+  const dots = points.map(p => ({ left: p.x - 5, right: p.x + 5, top: p.y - 5, bottom: p.y + 5 }));
+  const outside = b => Math.max(0, area.left - b.left) + Math.max(0, b.right - area.right) +
+                       Math.max(0, area.top - b.top) + Math.max(0, b.bottom - area.bottom);
+  const placed = [];
+  for (let round = 0; round < 4; ++round)
+    points.forEach((p, i) => {
+      const taken = [...dots, ...placed.filter((_, k) => k !== i)];
+      const cost = (b, rank) => taken.reduce((sum, t) => sum + overlap(b, t), 0) + 40 * outside(b) + 3 * rank;
+      const costs = labelPlaces(p).map((b, rank) => ({ b, cost: cost(b, rank) }));
+      placed[i] = costs.reduce((best, other) => other.cost < best.cost ? other : best).b;
+    });
+  return points.map((p, i) => ({ ...p, left: placed[i].left, right: placed[i].right, middle: (placed[i].top + placed[i].bottom) / 2 }));
 }
 
 // Labels at the ends of lines, from top to bottom without touching.
@@ -117,11 +126,15 @@ function drawAxes(figure, area, xs, ys, x, y) {
   for (const tick of ys.ticks())
     figure.append(svg("line", { x1: area.left, x2: area.right, y1: ys.at(tick), y2: ys.at(tick), class: "plot-grid" }),
                   svg("text", { x: area.left - 8, y: ys.at(tick) + 4, class: "plot-tick end" }, shortNumber(tick)));
-  for (const tick of xs.ticks())
-    figure.append(svg("line", { x1: xs.at(tick), x2: xs.at(tick), y1: area.bottom, y2: area.bottom + 4, class: "plot-axis" }),
-                  svg("text", { x: xs.at(tick), y: area.bottom + 17, class: "plot-tick middle" }, x.words ? tick : shortNumber(tick)));
+  const ticks = xs.ticks().map(tick => ({ x: xs.at(tick), text: x.words ? String(tick) : shortNumber(tick) }));
+  const room = ticks.slice(1).every((t, i) => t.x - ticks[i].x > 3.2 * (t.text.length + ticks[i].text.length));
+  ticks.forEach((tick, i) => {
+    const below = room ? 0 : 11 * (i % 2);  // every other one a line lower
+    figure.append(svg("line", { x1: tick.x, x2: tick.x, y1: area.bottom, y2: area.bottom + 4 + below, class: "plot-axis" }),
+                  svg("text", { x: tick.x, y: area.bottom + 16 + below, class: "plot-tick middle" }, tick.text));
+  });
   figure.append(svg("line", { x1: area.left, x2: area.right, y1: area.bottom, y2: area.bottom, class: "plot-axis" }),
-                svg("text", { x: (area.left + area.right) / 2, y: area.bottom + 35, class: "plot-label middle" },
+                svg("text", { x: (area.left + area.right) / 2, y: area.bottom + (room ? 35 : 40), class: "plot-label middle" },
                     x.label + (xs.log ? " (log)" : "")),
                 svg("text", { x: area.left, y: area.top - 6, class: "plot-label" }, y.label + (ys.log ? " (log)" : "")));
 }
@@ -141,6 +154,10 @@ function drawLabels(figure, lines, named, area, xs, ys) {
   const at = (line, p, label) => ({ x: xs.at(p.x), y: ys.at(p.y), label, color: line.color });
   const labels = named ? placeLabels(lines.flatMap(line => line.points.map(p => at(line, p, p.label))), area)
                        : spreadLabels(lines.filter(line => line.points.length).map(line => at(line, line.points.at(-1), line.label)), area);
-  for (const l of labels)
-    figure.append(svg("text", { x: l.left, y: l.middle + 4, class: "plot-name", style: `--color: ${l.color}` }, l.label));
+  for (const l of labels) {
+    const style = `--color: ${l.color}`, end = l.left > l.x ? l.left - 2 : l.right < l.x ? l.right + 2 : l.x;
+    if (Math.abs(l.middle - l.y) > (named ? 14 : 6))
+      figure.append(svg("line", { x1: l.x, y1: l.y, x2: end, y2: l.middle, class: "plot-leader", style }));
+    figure.append(svg("text", { x: l.left, y: l.middle + 4, class: "plot-name", style }, l.label));
+  }
 }

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using Json = nlohmann::json;
 
 std::string slurp(const fs::path& path) {
@@ -262,6 +263,21 @@ TEST_F(Report, SummaryIsTheMeanAndMarksTheBest) {
                         HasSubstr("| bad | 0.4000 | – |")));
   EXPECT_THAT(message_of([&] { axis_markdown(cases, numbers, "stile", "flip"); }), HasSubstr("did you mean `style`?"));
   EXPECT_THAT(message_of([&] { axis_markdown(cases, numbers, "style", "flop"); }), HasSubstr("did you mean `flip`?"));
+}
+
+TEST_F(Report, WhatLooksTheSameIsBestTogetherUnlessAllOfItIs) {
+  Json json = valid();
+  json["methods"].push_back({{"name", "third"}, {"label", "Third"}});
+  json["cases"][0]["images"].push_back({{"method", "third"}, {"file", "third.exr"}});
+  json["cases"].erase(1);
+  const Cases cases = read(json);
+  const std::size_t n = columns(cases).size();
+  const auto summary = [&](double good, double bad, double third) {
+    const auto filled = [&](double x) { return Measurement{Numbers(n, x), Numbers(n, x)}; };
+    return summary_markdown(cases, {{1, 1, 1, {filled(good), filled(bad), {}, filled(third)}}});
+  };
+  EXPECT_THAT(summary(0.10001, 0.4, 0.10002), AllOf(HasSubstr("| Good | **0.1000** |"), HasSubstr("| Third | **0.1000** |")));
+  EXPECT_THAT(summary(0.10001, 0.1, 0.10002), Not(HasSubstr("**")));
 }
 
 // ---- Pixels as text -----------------------------------------------------------------------------------------------------

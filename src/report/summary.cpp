@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "core/nearest.h"
 
@@ -61,13 +62,19 @@ std::string shown(std::optional<double> x) {
   return fmt::format("{:.{}f}", *x, size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 4);
 }
 
-// A column of cells with its best in bold; `higher` none: nothing is best.
+// A column of cells with its best in bold, and what looks the same, unless all do; `higher` none: nothing is best.
 std::vector<std::string> cells(const std::vector<std::optional<double>>& values, std::optional<bool> higher) {
   std::optional<double> best;
-  for (const std::optional<double>& x : values)
-    if (x && higher && (!best || (*higher ? *x > *best : *x < *best))) best = x;
+  std::multiset<std::string> looks;
+  for (const std::optional<double>& x : values) {
+    if (!x) continue;
+    looks.insert(shown(x));
+    if (higher && (!best || (*higher ? *x > *best : *x < *best))) best = x;
+  }
+  const bool all_alike = looks.size() > 1 && looks.count(shown(best)) == looks.size();
+  const std::string marked = best && !all_alike ? shown(best) : "";
   std::vector<std::string> result;
-  for (const std::optional<double>& x : values) result.push_back(x && x == best ? fmt::format("**{}**", shown(x)) : shown(x));
+  for (const std::optional<double>& x : values) result.push_back(shown(x) == marked ? fmt::format("**{}**", marked) : shown(x));
   return result;
 }
 

@@ -170,6 +170,29 @@ class Page(unittest.TestCase):
         self.assertEqual(self.column("#summary-table", 0), ["Raster, 1 sample", "Raster, 8 samples"])
         self.assertEqual(self.browser.run(f"document.querySelectorAll('#summary-table th')[{psnr}].getAttribute('aria-sort')"), "ascending")
 
+    def test_what_looks_the_same_is_best_together_unless_all_of_it_is(self):
+        self.overview()
+        marked = lambda values: self.browser.run(f"""(() => {{
+            const table = sortableTable("t", [{{ label: "x", value: row => row, better: "lower" }}], {values}, {{}}, () => {{}});
+            return [...table.querySelectorAll("td")].map(cell => cell.className.includes("best")); }})()""")
+        self.assertEqual(marked([2, 0.50001, 0.50002]), [False, True, True])
+        self.assertEqual(marked([3, 3]), [False, False])
+        self.assertEqual(marked([3]), [False])
+
+    def test_every_axis_of_the_matrix_has_its_name(self):
+        self.overview()
+        corners = self.browser.run("[...document.querySelectorAll('.matrix .corner')].map(c => c.textContent)")
+        self.assertEqual(corners, ["light →", "hairstyle ↓distance →"])
+
+    def test_labels_of_points_cover_no_other(self):
+        self.overview()
+        boxes = self.browser.run("""placeLabels(["One method", "Another", "A third one", "One more", "The last"].map((label, i) =>
+            ({ label, x: 100 + i, y: 100 - i })), { left: 50, right: 400, top: 20, bottom: 250 }).map(l => [l.left, l.right, l.middle])""")
+        for i, (left, right, middle) in enumerate(boxes):
+            self.assertGreaterEqual(left, 50)
+            for other in boxes[:i]:
+                self.assertTrue(right <= other[0] or left >= other[1] or abs(middle - other[2]) >= 11, f"{boxes}")
+
     def test_filter_leaves_what_is_chosen(self):
         self.overview()
         cards = "document.querySelectorAll('.card').length"
