@@ -1,12 +1,18 @@
 #!/usr/bin/env python3
-"""Path tracing beside Blender Cycles: the same strands, camera, size, environment, threads and bounces.
+"""Path tracing beside Blender Cycles: the same strands, fibers, camera, size, environment, threads and bounces.
 
-  bench/peers/cycles.py [--pelage build/release/bin/pelage] [--size 1024] [--samples 4] [--runs 3] [--strands 10000 50000]
+  bench/peers/cycles.py [--pelage build/release/bin/pelage] [--size 512] [--samples 8] [--runs 3] [--strands 10000 50000]
+                        [--models chiang marschner]
 
 Needs `apt-get install blender python3-numpy`. A picture of N and one of 2 N samples a pixel are made in turn; their difference is
-the time of N samples without start, scene and acceleration structure. Prints millions of samples per second (one sample: a
-camera ray and all that follows from it), medians, and the ratio. Both draw flat ribbons with a physical hair
-BCSDF (Principled Hair here, Marschner there) and follow 12 bounces.
+the time of N samples without start, scene and acceleration structure. Both draw flat ribbons, follow 12 bounces, and know
+the fiber by the same absorption, roughness, tilt and index of refraction: Principled Hair is Chiang's BCSDF, which is the model
+`chiang` here; `marschner`, the default, is its mean over the width of the strand. Prints, as medians,
+
+  rate        millions of samples per second (one sample: a camera ray and all that follows from it), and their ratio
+  mean        radiance of both pictures: what both make of the same fibers under a light of 1 from everywhere
+  variance    of one sample, averaged over the picture: half the MSE of two pictures with different seeds, times their samples
+  efficiency  ratio of 1/(variance * time)
 """
 import argparse
 import json
@@ -19,6 +25,7 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 BOUNCES = 12
+FIBER = {"eumelanin": 0.7, "pheomelanin": 0.2, "eta": 1.55, "beta_longitudinal": 7.5, "beta_azimuthal": 15, "cuticle_tilt": 3}
 
 
 def run(*command):
@@ -30,55 +37,80 @@ def run(*command):
     return done.stdout
 
 
-def cycles_seconds(groom, scene, samples, threads, out):
-    text = run("blender", "-b", "--python-exit-code", 1, "--python", os.path.join(HERE, "cycles_scene.py"), "--", groom, scene,
-               samples, BOUNCES, threads, out)
-    return float(re.search(r"^seconds (\S+)", text, re.M).group(1))
-
-
-def pelage_seconds(pelage, scene, samples, threads, out):
-    text = run(pelage, "trace", scene, "-o", out, "--spp", samples, "--bounces", BOUNCES, "--threads", threads,
-               "--no-checkpoint", "--json")
-    return json.loads(text)["seconds"]
-
-
-def write_scene(folder, groom, size):
-    path = os.path.join(folder, "scene.json")
+def write_scene(folder, groom, size, model):
+    path = os.path.join(folder, f"{model}.json")
     with open(path, "w") as f:
         json.dump({"camera": {"eye": [-0.35, 0.05, 0.98], "target": [0, -0.16, 0], "fov": 31},
-                   "environment": {"radiance": [1, 1, 1]},
-                   "grooms": [{"name": "straight", "file": os.path.basename(groom)}],
+                   "environment": {"radiance": [1, 1, 1], "visible": True},
+                   "grooms": [{"name": "straight", "file": os.path.basename(groom), "material": {"model": model, **FIBER}}],
                    "settings": {"width": size, "height": size}}, f)
     return path
+
+
+class Pelage:
+    def __init__(self, options, folder, groom, model):
+        self.name, self.options, self.folder = model, options, folder
+        self.scene = write_scene(folder, groom, options.size, model)
+
+    def picture(self, samples, seed):
+        return os.path.join(self.folder, f"{self.name}_{samples}_{seed}.exr")
+
+    def trace(self, samples, seed):
+        text = run(self.options.pelage, "trace", self.scene, "-o", self.picture(samples, seed), "--spp", samples, "--bounces",
+                   BOUNCES, "--threads", self.options.threads, "--seed", seed, "--no-checkpoint", "--json")
+        return json.loads(text)["seconds"]
+
+
+class Cycles(Pelage):
+    def __init__(self, options, folder, groom, model):
+        super().__init__(options, folder, groom, model)
+        self.name, self.groom, self.means = "cycles", groom, {}
+
+    def trace(self, samples, seed, *pictures):
+        text = run("blender", "-b", "--python-exit-code", 1, "--python", os.path.join(HERE, "cycles_scene.py"), "--", self.groom,
+                   self.scene, samples, BOUNCES, self.options.threads, seed, self.picture(samples, seed), *pictures)
+        self.means = {path: float(mean) for mean, path in re.findall(r"^mean (\S+) (.*)$", text, re.M)}
+        return float(re.search(r"^seconds (\S+)", text, re.M).group(1))
+
+
+def mse(pelage, a, b):
+    return json.loads(run(pelage, "compare", a, b, "--metrics", "mse", "--json"))["mse"]
 
 
 def compare(options, strands, folder):
     groom = os.path.join(folder, "straight.hair")
     run(options.pelage, "grow", "straight", "--strands", strands, "--points", 32, "--width", 1e-4, "--width-variation", 0,
         "--taper", 0, "-o", groom)
-    scene = write_scene(folder, groom, options.size)
-    out = os.path.join(folder, "out.exr")
-    n, threads = options.samples, options.threads
-    rates = {"cycles": [], "pelage": []}
+    ours = [Pelage(options, folder, groom, model) for model in options.models]
+    cycles = Cycles(options, folder, groom, options.models[0])
+    n = options.samples
+    rates = {tracer.name: [] for tracer in (*ours, cycles)}
     for _ in range(options.runs):
-        work = n * options.size ** 2 * 1e-6
-        seconds = {s: cycles_seconds(groom, scene, s, threads, os.path.join(folder, "cycles.png")) for s in (n, 2 * n)}
-        rates["cycles"].append(work / (seconds[2 * n] - seconds[n]))
-        seconds = {s: pelage_seconds(options.pelage, scene, s, threads, out) for s in (n, 2 * n)}
-        rates["pelage"].append(work / (seconds[2 * n] - seconds[n]))
-    median = {name: statistics.median(values) for name, values in rates.items()}
-    ratio = statistics.median(p / c for p, c in zip(rates["pelage"], rates["cycles"]))
-    print(f"{strands:>8} strands x 32: cycles {median['cycles']:.3f}, pelage {median['pelage']:.3f} M samples/s, ratio {ratio:.2f}", flush=True)
+        for tracer in (*ours, cycles):
+            rates[tracer.name].append(n * options.size**2 * 1e-6 / (tracer.trace(2 * n, 0) - tracer.trace(n, 1)))
+    cycles.trace(n, 1, *(tracer.picture(2 * n, 0) for tracer in ours))
+    means = {**cycles.means, cycles.picture(2 * n, 0): cycles.means[cycles.picture(n, 1)]}
+    variance = {}
+    for tracer in (*ours, cycles):
+        # The two pictures have N and 2 N samples: their squared difference is 3/2 of one sample's variance over N.
+        variance[tracer.name] = mse(options.pelage, tracer.picture(2 * n, 0), tracer.picture(n, 1)) * n / 1.5
+    print(f"{strands} strands x 32, {options.size}^2")
+    for tracer in (*ours, cycles):
+        ratio = statistics.median(p / c for p, c in zip(rates[tracer.name], rates["cycles"]))
+        print(f"  {tracer.name:10} {statistics.median(rates[tracer.name]):.3f} M samples/s, mean {means[tracer.picture(2 * n, 0)]:.4f}, "
+              f"variance {variance[tracer.name]:.5f}; beside cycles: rate {ratio:.2f}, "
+              f"efficiency {ratio * variance['cycles'] / variance[tracer.name]:.2f}", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--pelage", type=os.path.abspath, default=os.path.join(HERE, "../../build/release/bin/pelage"))
-    parser.add_argument("--size", type=int, default=1024)
-    parser.add_argument("--samples", type=int, default=4)
+    parser.add_argument("--size", type=int, default=512)
+    parser.add_argument("--samples", type=int, default=8)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--strands", type=int, nargs="+", default=[10000, 50000])
+    parser.add_argument("--models", nargs="+", default=["chiang", "marschner"])
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         for strands in options.strands:

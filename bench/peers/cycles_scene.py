@@ -1,7 +1,7 @@
-"""The scene of cycles.sh inside Blender: blender -b --python cycles_scene.py -- GROOM.hair SCENE.json SAMPLES BOUNCES THREADS OUT.png
+"""The scene of cycles.py inside Blender: blender -b --python cycles_scene.py -- GROOM.hair SCENE.json SAMPLES BOUNCES THREADS SEED OUT.exr [PICTURE...]
 
-Reads the very groom file and the camera, size and environment of the very scene file that `pelage trace` gets. Prints
-`seconds SECONDS` of the call that renders. Blender 3.4 makes hair objects from Python only by way of geometry nodes: the
+Reads the very groom file and the camera, size, material and environment of the very scene file that `pelage trace` gets. Prints
+`seconds SECONDS` of the call that renders, and `mean RADIANCE FILE` of its picture and of each further one. Blender 3.4 makes hair objects from Python only by way of geometry nodes: the
 strands stand in a curve object, which a node group hands over to a hair object with their radii.
 """
 import json
@@ -63,17 +63,45 @@ def hair_object(strands, radius, material):
     return hair
 
 
-def hair_material():
+def solve(function, value):
+    """x in 0...1 where a rising function reaches the value."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if function(middle) < value else (low, middle)
+    return low
+
+
+def hair_material(fiber):
+    """Principled Hair with the absorption and the roughness of a material of Pelage (Chiang 2016, eq. 7 and 8, inverted)."""
     material = bpy.data.materials.new("hair")
     material.use_nodes = True
     nodes = material.node_tree.nodes
     nodes.clear()
     hair = nodes.new("ShaderNodeBsdfHairPrincipled")
-    hair.parametrization = "MELANIN"
-    hair.inputs["Melanin"].default_value = 0.7
+    hair.parametrization = "ABSORPTION"
+    # d'Eon 2011, table 1: as Pelage has it.
+    hair.inputs["Absorption Coefficient"].default_value = [
+        fiber["eumelanin"] * e + fiber["pheomelanin"] * p for e, p in ((0.419, 0.187), (0.697, 0.4), (1.37, 1.05))]
+    longitudinal = 2 * math.radians(fiber["beta_longitudinal"])
+    azimuthal = math.radians(fiber["beta_azimuthal"]) * math.sqrt(3) / math.pi
+    hair.inputs["Roughness"].default_value = solve(lambda b: 0.726 * b + 0.812 * b**2 + 3.7 * b**20, longitudinal)
+    hair.inputs["Radial Roughness"].default_value = solve(
+        lambda b: math.sqrt(math.pi / 8) * (0.265 * b + 1.194 * b**2 + 5.372 * b**22), azimuthal)
+    hair.inputs["Coat"].default_value = 0
+    hair.inputs["IOR"].default_value = fiber["eta"]
+    hair.inputs["Offset"].default_value = math.radians(fiber["cuticle_tilt"])
+    hair.inputs["Random Color"].default_value = hair.inputs["Random Roughness"].default_value = 0
     output = nodes.new("ShaderNodeOutputMaterial")
     material.node_tree.links.new(hair.outputs[0], output.inputs["Surface"])
     return material
+
+
+def print_mean(path):
+    image = bpy.data.images.load(path)
+    pixels = numpy.empty(len(image.pixels), "f4")
+    image.pixels.foreach_get(pixels)
+    print("mean", pixels.reshape(-1, image.channels)[:, :3].mean(dtype="f8"), path)
 
 
 def look(camera, eye, target):
@@ -84,13 +112,13 @@ def look(camera, eye, target):
 
 
 def main():
-    groom, scene_file, samples, bounces, threads, out = sys.argv[sys.argv.index("--") + 1:]
+    groom, scene_file, samples, bounces, threads, seed, out, *pictures = sys.argv[sys.argv.index("--") + 1:]
     description = json.load(open(scene_file))
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     xyz, diameter = read_cyhair(groom)
     strands = strand_curves(xyz)
-    hair = hair_object(strands, diameter / 2, hair_material())
+    hair = hair_object(strands, diameter / 2, hair_material(description["grooms"][0]["material"]))
     scene.collection.objects.link(hair)
 
     eye, target = description["camera"]["eye"], description["camera"]["target"]
@@ -112,9 +140,11 @@ def main():
     render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
     render.threads_mode, render.threads = "FIXED", int(threads)
     render.filepath = out
+    render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
     cycles = scene.cycles
     cycles.device = "CPU"
-    cycles.samples = int(samples)
+    cycles.samples, cycles.seed = int(samples), int(seed)
+    cycles.pixel_filter_type = "BOX"
     cycles.use_adaptive_sampling = False
     cycles.use_denoising = False
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = int(bounces)
@@ -124,6 +154,8 @@ def main():
     start = time.perf_counter()
     bpy.ops.render.render(write_still=True)
     print("seconds", time.perf_counter() - start)
+    for picture in (out, *pictures):
+        print_mean(picture)
 
 
 main()

@@ -16,7 +16,7 @@ namespace {
 /// Little-endian, as everything that this library runs on. The checksum covers all before it.
 struct Header {
   std::array<char, 8> magic{'P', 'L', 'G', 'T', 'R', 'A', 'C', 'E'};
-  std::uint32_t version = 1;
+  std::uint32_t version = 2;  ///< also of what the samples are: which paths end, by which numbers
   std::int32_t width = 0, height = 0;
   std::uint32_t pixel_bytes = sizeof(FilmPixel);
   std::uint64_t fingerprint = 0;

@@ -200,16 +200,21 @@ float PathTracer::State::found_share(const FiberSample& scattered, int depth) co
 /// All light that leaves the first vertex toward the eye.
 void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const {
   const EnvironmentSampler& environment = lights.environment();
+  const bool lit = seek_environment || !lights.lights().empty();
   Vec3 throughput(1, 1, 1);
   for (int depth = 0; depth < max_bounces; ++depth) {
-    const std::array<float, 4> u = random.next(), v = random.next();
-    gather_lights(vertex, v, throughput, depth, tally);
+    const bool roulette = depth >= settings.first_roulette;
+    const std::array<float, 4> u = random.next();
+    std::array<float, 4> v{};
+    if (lit || roulette) v = random.next();
+    else random.skip();
+    if (lit) gather_lights(vertex, v, throughput, depth, tally);
     const FiberSample scattered = pelage::sample(vertex.bsdf, u);
     if (!(scattered.pdf > 0)) return;
     throughput = throughput * scattered.value / scattered.pdf;
     if (tally.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
-    if (depth >= settings.first_roulette) {
-      const float survival = std::min(largest(throughput), 1.f);
+    if (roulette) {
+      const float survival = std::min(std::sqrt(largest(throughput)), 1.f);
       if (!(v[3] < survival)) return;
       throughput = throughput / survival;
     }

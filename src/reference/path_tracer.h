@@ -25,7 +25,7 @@ struct PathSettings {
   Technique technique = Technique::kMis;
   CurveShape curve_shape = CurveShape::kFlat;  ///< kDual counts bands, whatever stands here
   int max_bounces = 70;                        ///< scattering events of a path, ≥ 1
-  int first_roulette = 3;  ///< scattering events after which paths that carry little may end by chance, ≥ 0; the mean stays
+  int first_roulette = 1;  ///< scattering events after which paths that carry little may end by chance, ≥ 0; the mean stays
   bool shadows = true;     ///< false: nothing keeps a light's or the environment's own light off
   std::uint64_t seed = 0;  ///< another seed, other random numbers
   std::vector<Vec2> positions;            ///< in the pixel, from its top left corner, 0…1: sample i stands at

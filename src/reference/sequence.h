@@ -38,8 +38,6 @@ constexpr std::array<SobolRow, 32> sobol_rows() {
   }
   return rows;
 }
-inline constexpr std::array<SobolRow, 32> kSobolRows = sobol_rows();
-
 constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
   x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
@@ -48,15 +46,30 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return x >> 16 | x << 16;
 }
 
+/// What each value of each four bits of the reversed index adds: the rows, with their bits reversed too. So everything between
+/// two scramblings stays reversed, as they need it.
+using SobolTable = std::array<std::array<SobolRow, 16>, 8>;
+constexpr SobolTable sobol_table() {
+  const std::array<SobolRow, 32> rows = sobol_rows();
+  SobolTable table{};
+  for (std::size_t nibble = 0; nibble < 8; ++nibble)
+    for (std::size_t value = 0; value < 16; ++value)
+      for (std::size_t bit = 0; bit < 4; ++bit)
+        for (std::size_t d = 0; d < 4; ++d)
+          if (value >> bit & 1) table[nibble][value][d] ^= reverse_bits(rows[31 - (4 * nibble + bit)][d]);
+  return table;
+}
+inline constexpr SobolTable kSobolTable = sobol_table();
+
 /// A random permutation of [0, 2³²) that keeps the nesting of binary intervals: Owen's scrambling by the hash of Laine &
-/// Karras, as in Burley 2020 (references.bib: Burley2020Owen).
-constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
-  x = reverse_bits(x) + seed;
+/// Karras, as in Burley 2020 (references.bib: Burley2020Owen), of numbers whose bits are reversed before and after.
+constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+  x += seed;
   x ^= x * 0x6c50b47cu;
   x ^= x * 0xb82f1e52u;
   x ^= x * 0xc7afe638u;
   x ^= x * 0x8d22f6e6u;
-  return reverse_bits(x);
+  return x;
 }
 
 }  // namespace detail
@@ -80,16 +93,21 @@ class Sequence {
     return {uniform_from_bits(r.x), uniform_from_bits(r.y), uniform_from_bits(r.z), uniform_from_bits(r.w)};
   }
 
+  /// As next(), for numbers that nobody looks at.
+  void skip() { ++block_; }
+
  private:
   RandomBits sobol(std::uint32_t block) const {
+    using namespace detail;
     const RandomBits seeds = pcg4d(key_.x, key_.y, key_.z, key_.w + block);
-    detail::SobolRow v{};
-    for (std::uint32_t bits = detail::scramble(index_, seeds.x ^ seeds.z); bits != 0; bits &= bits - 1) {
-      const detail::SobolRow& row = detail::kSobolRows[static_cast<std::size_t>(std::countr_zero(bits))];
+    const std::uint32_t at = scramble_reversed(reverse_bits(index_), seeds.x ^ seeds.z);
+    SobolRow v{};
+    for (std::size_t nibble = 0; nibble < 8; ++nibble) {
+      const SobolRow& row = kSobolTable[nibble][at >> (4 * nibble) & 15];
       for (std::size_t d = 0; d < 4; ++d) v[d] ^= row[d];
     }
-    return {detail::scramble(v[0], seeds.x), detail::scramble(v[1], seeds.y), detail::scramble(v[2], seeds.z),
-            detail::scramble(v[3], seeds.w)};
+    const auto draw = [](std::uint32_t x, std::uint32_t seed) { return reverse_bits(scramble_reversed(x, seed)); };
+    return {draw(v[0], seeds.x), draw(v[1], seeds.y), draw(v[2], seeds.z), draw(v[3], seeds.w)};
   }
 
   RandomBits key_;

@@ -50,6 +50,36 @@ TEST(Sequence, UniformAndUncorrelated) {
   }
 }
 
+/// Bit k of the index adds row k of the generator matrix: Sobol's sequence as it is defined.
+detail::SobolRow by_definition(std::uint32_t index) {
+  constexpr std::array<detail::SobolRow, 32> rows = detail::sobol_rows();
+  detail::SobolRow v{};
+  for (std::size_t k = 0; k < 32; ++k)
+    for (std::size_t d = 0; d < 4; ++d)
+      if (index >> k & 1) v[d] ^= rows[k][d];
+  return v;
+}
+
+TEST(Sequence, TheTableIsSobols) {
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    const std::uint32_t index = i < 100 ? i : pcg4d(i, 1, 2, 3).x, reversed = detail::reverse_bits(index);
+    const detail::SobolRow expected = by_definition(index);
+    detail::SobolRow v{};
+    for (std::size_t nibble = 0; nibble < 8; ++nibble)
+      for (std::size_t d = 0; d < 4; ++d) v[d] ^= detail::kSobolTable[nibble][reversed >> (4 * nibble) & 15][d];
+    for (std::size_t d = 0; d < 4; ++d) ASSERT_EQ(detail::reverse_bits(v[d]), expected[d]) << index << " dimension " << d;
+  }
+}
+
+TEST(Sequence, SkippedNumbersAreNumbersToo) {
+  Sequence a(1, 2, 3), b(1, 2, 3);
+  for (int i = 0; i < 12; ++i) {
+    const auto expected = a.next();
+    if (i % 3 == 1) b.skip();
+    else EXPECT_EQ(b.next(), expected);
+  }
+}
+
 TEST(Sequence, PureFunction) {
   Sequence a(1, 2, 3), b(1, 2, 3), c(1, 2, 4), d(2, 2, 3), e(1, 3, 3);
   for (int i = 0; i < 12; ++i) {

@@ -67,8 +67,8 @@ class Exposure {
 
   void run(const PathTracer& tracer) {
     std::uint32_t step = 1;
-    while (!done()) {
-      const std::uint32_t at = film_.least_samples(), target = next_target(at, step);
+    for (std::uint32_t at = film_.least_samples(); !done(at);) {
+      const std::uint32_t target = next_target(at, step);
       const auto start = Clock::now();
       try {
         add_pass(tracer, target, share_of_pass(at, target), film_);
@@ -77,6 +77,7 @@ class Exposure {
         keep();
         throw;
       }
+      at = target;
       const double spent = seconds_since(start);
       film_.seconds += spent;
       if (spent < kPassSeconds / 2) step *= 2;
@@ -87,8 +88,7 @@ class Exposure {
   }
 
  private:
-  bool done() const {
-    const std::uint32_t at = film_.least_samples();
+  bool done(std::uint32_t at) const {
     if (at >= static_cast<std::uint32_t>(settings_.samples)) return true;
     if (settings_.seconds > 0 && film_.seconds >= settings_.seconds && at > 0) return true;
     return settings_.noise > 0 && at > 0 && at % kNoiseStep == 0 && picture_noise(film_) < settings_.noise;
