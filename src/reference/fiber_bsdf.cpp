@@ -17,8 +17,8 @@ float cosine_of(float sine) { return std::sqrt(1 - sine * sine); }
 
 }  // namespace
 
-FiberBsdf::Model FiberBsdf::make_model(HairMaterial::Model model, const FiberView& view) {
-  switch (model) {
+FiberBsdf::Model FiberBsdf::make_model(const FiberView& view) {
+  switch (view.material.material().model) {
     case HairMaterial::Model::kKajiyaKay: return fiber_models::KajiyaKay(view);
     case HairMaterial::Model::kZhu: return fiber_models::Zhu(view);
     case HairMaterial::Model::kChiang: return fiber_models::Chiang(view);
@@ -28,10 +28,9 @@ FiberBsdf::Model FiberBsdf::make_model(HairMaterial::Model model, const FiberVie
   return fiber_models::Marschner(view);
 }
 
-FiberBsdf::FiberBsdf(const HairMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, float h)
+FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, float h)
     : tangent_(tangent), across_(across(tangent, to_eye)), side_(cross(tangent_, across_)),
-      model_(make_model(material.model,
-                        {material, strand_color, sine_along(tangent, to_eye), cosine_of(sine_along(tangent, to_eye)), h})) {}
+      model_(make_model({material, strand_color, sine_along(tangent, to_eye), cosine_of(sine_along(tangent, to_eye)), h})) {}
 
 FiberAngles FiberBsdf::angles(Vec3 to_light) const {
   const float sin_i = sine_along(tangent_, to_light);
@@ -59,8 +58,8 @@ FiberSample FiberBsdf::sample(std::array<float, 4> u) const {
     const kernel::ScatterDirection d = model.sample(Vec4(u[0], u[1], u[2], u[3]));
     const FiberAngles a{d.sin_i, d.cos_i, d.phi};
     const Vec3 in_plane = across_ * kernel::m_cos(d.phi) + side_ * kernel::m_sin(d.phi);
-    return FiberSample{normalize(tangent_ * d.sin_i + in_plane * d.cos_i), model.value(a), model.density(a),
-                       static_cast<int>(d.lobe)};
+    const FiberWeight w = model.weigh(a);
+    return FiberSample{normalize(tangent_ * d.sin_i + in_plane * d.cos_i), w.value, w.density, static_cast<int>(d.lobe)};
   };
   return std::visit(draw, model_);
 }

@@ -29,7 +29,7 @@ class FiberBsdf {
   /// tangent: unit length, root to tip. to_eye: unit length. strand_color: as for make_fiber() (frame/fiber.h).
   /// h: where the ray meets the fiber, in radii from its axis along cross(to_eye, tangent), −1…1; the surface's normal n
   /// there has the component h along that axis. Only near-field models look at it.
-  FiberBsdf(const HairMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, float h);
+  FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, float h);
 
   /// f·cos θ_i, sum of the lobes. to_light: unit length, away from the fiber.
   Vec3 evaluate(Vec3 to_light) const;
@@ -45,7 +45,7 @@ class FiberBsdf {
  private:
   using Model = std::variant<fiber_models::Marschner, fiber_models::Zhu, fiber_models::KajiyaKay, fiber_models::Chiang,
                              fiber_models::Sadeghi>;
-  static Model make_model(HairMaterial::Model model, const FiberView& view);
+  static Model make_model(const FiberView& view);
   FiberAngles angles(Vec3 to_light) const;
 
   Vec3 tangent_, across_, side_;  // right-handed frame: along, in the plane of to_eye, and the rest

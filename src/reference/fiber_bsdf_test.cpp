@@ -24,6 +24,7 @@ struct Case {
   HairMaterial material;
   float theta_o, h;
   std::string name;
+  FiberMaterial::Tables tables = FiberMaterial::Tables::kNone;
 };
 
 /// Direction of inclination theta and azimuth phi about kTangent.
@@ -31,7 +32,9 @@ Vec3 direction(double theta, double phi) {
   return {static_cast<float>(std::cos(theta) * std::cos(phi)), static_cast<float>(std::sin(theta)),
           static_cast<float>(-std::cos(theta) * std::sin(phi))};
 }
-FiberBsdf bsdf_of(const Case& c) { return FiberBsdf(c.material, {}, kTangent, direction(c.theta_o, 0), c.h); }
+FiberBsdf bsdf_of(const Case& c) {
+  return FiberBsdf(FiberMaterial(c.material, c.tables), {}, kTangent, direction(c.theta_o, 0), c.h);
+}
 
 const char* name_of(Model m) {
   switch (m) {
@@ -64,6 +67,9 @@ std::vector<Case> grid(std::vector<float> betas_m, std::vector<float> betas_n, s
               c.material.eumelanin = eumelanin, c.material.pheomelanin = 0;
               c.name += " beta_m " + std::to_string(beta_m) + " beta_n " + std::to_string(beta_n) + " tilt " +
                         std::to_string(tilt) + " eumelanin " + std::to_string(eumelanin) + " theta_o " + std::to_string(theta);
+              all.push_back(c);
+              if (model != Model::kMarschner) continue;
+              c.name += " from its table", c.tables = FiberMaterial::Tables::kWherePossible;
               all.push_back(c);
             }
           }
@@ -175,7 +181,7 @@ TEST(FiberBsdf, ReciprocalOnTheSpecularCone) {
     const FiberBsdf there = bsdf_of(c);
     for (double phi = 0.1; phi < 3.1; phi += 0.3) {
       const Vec3 light = direction(-c.theta_o, phi);
-      const FiberBsdf back(c.material, {}, kTangent, light, -c.h);
+      const FiberBsdf back(FiberMaterial(c.material, c.tables), {}, kTangent, light, -c.h);
       const float a = there.evaluate(light).y, b = back.evaluate(direction(c.theta_o, 0)).y;
       EXPECT_NEAR(a, b, 1e-4f * a + 1e-7f) << c.name << " phi " << phi;
       ++compared;
@@ -188,10 +194,10 @@ TEST(FiberBsdf, IntensitiesNeverMakeLight) {
   HairMaterial m;
   m.model = Model::kSadeghi;
   m.color_source = HairMaterial::ColorSource::kRgb, m.color = {1, 1, 1};
-  const float before = FiberBsdf(m, {}, kTangent, {1, 0, 0}, 0).albedo().x;
+  const float before = FiberBsdf(FiberMaterial(m), {}, kTangent, {1, 0, 0}, 0).albedo().x;
   EXPECT_NEAR(before, 0.98f, 2e-3f) << "the sum of the intensities";
   m.artist.tt.intensity = m.artist.trt.intensity = 1;
-  EXPECT_NEAR(FiberBsdf(m, {}, kTangent, {1, 0, 0}, 0).albedo().x, 1, 2e-3f);
+  EXPECT_NEAR(FiberBsdf(FiberMaterial(m), {}, kTangent, {1, 0, 0}, 0).albedo().x, 1, 2e-3f);
 }
 
 // The whole domain, its ends more often than the rest.
@@ -208,7 +214,8 @@ TEST(FiberBsdf, FiniteAtTheExtremes) {
     m.beta_longitudinal = draw(0.0087f, 1.05f), m.beta_azimuthal = draw(0.0087f, 1.57f);
     m.cuticle_tilt = draw(0, 0.26f), m.specular_gain = draw(0, 100);
     const float half_pi = 1.57079633f;
-    const FiberBsdf f(m, {}, kTangent, direction(draw(-half_pi, half_pi), draw(-3, 3)), draw(-1, 1));
+    const FiberBsdf f(FiberMaterial(m, static_cast<FiberMaterial::Tables>(i / std::size(kModels) % 2)), {}, kTangent,
+                      direction(draw(-half_pi, half_pi), draw(-3, 3)), draw(-1, 1));
     const auto last = [&] { return std::min(draw(0, 1), 0x1.fffffep-1f); };
     const FiberSample s = f.sample({last(), last(), last(), last()});
     const Vec3 w = direction(draw(-half_pi, half_pi), draw(-3, 3));

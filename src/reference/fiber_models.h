@@ -2,13 +2,14 @@
 //
 // Every struct here is made for one θ_o and has
 //   value(a)    f·cos θ_i of all lobes            density(a)  of sample(), per solid angle, all lobes together
-//   sample(u)   a direction                       albedo()    integral of value over the sphere
+//   weigh(a)    both at once                      sample(u)   a direction
+//   albedo()    integral of value over the sphere
 //   keep(lobe)  switches all other lobes off: 0 R, 1 TT, 2 TRT, 3 what remains
 #pragma once
 
 #include <pelage/scene.h>
 
-#include "frame/fiber.h"
+#include "reference/fiber_material.h"
 
 namespace pelage {
 
@@ -19,9 +20,17 @@ struct FiberAngles {
 
 /// What all models are made from. h: see FiberBsdf.
 struct FiberView {
-  const HairMaterial& material;
+  const FiberMaterial& material;
   Vec3 strand_color;
   float sin_o, cos_o, h;
+
+  kernel::ScatterFiber fiber() const { return material.fiber(strand_color); }
+};
+
+/// What a direction scatters and how often it is drawn.
+struct FiberWeight {
+  Vec3 value;
+  float density;
 };
 
 namespace fiber_models {
@@ -29,14 +38,44 @@ namespace fiber_models {
 using namespace kernel;
 inline constexpr Vec3 kNone{0, 0, 0};
 
+/// A pair of azimuthal lobes as sampling.h draws it: scatter_sample_pair() and scatter_pdf_pair() with what all directions share.
+struct PairDensity {
+  explicit PairDensity(const ScatterPair& n) : mu(scatter_pair_mu(n)), rate(scatter_pair_rate(n.kappa)) {}
+
+  float density(float x) const {
+    return 0.5f * (scatter_logistic(scatter_wrap(x - mu), rate) + scatter_logistic(scatter_wrap(x + mu), rate));
+  }
+  float sample(float u) const {
+    return u < 0.5f ? scatter_sample_logistic(u + u, rate) - mu : scatter_sample_logistic(u + u - 1, rate) + mu;
+  }
+
+  float mu, rate;
+};
+
 /// R, TT, TRT and what remains, each a cone times an azimuthal lobe.
 struct Marschner {
-  explicit Marschner(const FiberView& v)
-      : lobes(scatter_prepare_marschner(make_fiber(v.material, v.strand_color), v.sin_o, v.cos_o)) {}
+  explicit Marschner(const FiberView& v) : lobes(v.material.marschner(v.strand_color, v.sin_o, v.cos_o)) {}
 
   Vec3 value(FiberAngles a) const { return scatter_marschner(lobes, a.sin_i, a.cos_i, m_cos(a.phi)); }
-  float density(FiberAngles a) const { return scatter_pdf_marschner(lobes, choice, a.sin_i, a.cos_i, a.phi); }
-  ScatterDirection sample(Vec4 u) const { return scatter_sample_marschner(lobes, choice, u); }
+  float density(FiberAngles a) const { return weigh(a).density; }
+  /// scatter_marschner() and scatter_pdf_marschner(), whose cones are the same.
+  FiberWeight weigh(FiberAngles a) const {
+    const float cos_phi = m_cos(a.phi), sin_phi = scatter_sin_phi(cos_phi);
+    const float r = scatter_cone_value(lobes.r, a.sin_i, a.cos_i), tt = scatter_cone_value(lobes.tt, a.sin_i, a.cos_i),
+                trt = scatter_cone_value(lobes.trt, a.sin_i, a.cos_i), rest = trt * kInvTwoPi;
+    return {v_splat(r * scatter_reflection(lobes, cos_phi)) +
+                lobes.a_tt * (tt * scatter_pair_value(lobes.n_tt, -cos_phi, sin_phi, 0)) +
+                lobes.a_trt * (trt * scatter_pair_value(lobes.n_trt, cos_phi, sin_phi, 0)) + lobes.a_rest * rest,
+            choice.r * r * scatter_pdf_reflection(lobes, a.phi) + choice.tt * tt * around_tt.density(a.phi - kPi) +
+                choice.trt * trt * around_trt.density(a.phi) + choice.rest * rest};
+  }
+  /// scatter_sample_marschner(), which draws from every lobe, drawing from the chosen one alone.
+  ScatterDirection sample(Vec4 u) const {
+    const float lobe = scatter_chosen(choice, u.x);
+    if (lobe == 0) return draw(lobes.r, u, scatter_sample_reflection(lobes, u.w), lobe);
+    if (lobe == 1) return draw(lobes.tt, u, kPi + around_tt.sample(u.w), lobe);
+    return draw(lobes.trt, u, lobe == 2 ? around_trt.sample(u.w) : kTwoPi * u.w, lobe);
+  }
   Vec3 albedo() const { return v_splat(lobes.a_r) + lobes.a_tt + lobes.a_trt + lobes.a_rest; }
   void keep(int lobe) {
     if (lobe != 0) lobes.gain_r = lobes.a_r = 0;
@@ -44,17 +83,22 @@ struct Marschner {
     if (lobe != 2) lobes.a_trt = kNone;
     if (lobe != 3) lobes.a_rest = kNone;
   }
+  static ScatterDirection draw(const ScatterCone& cone, Vec4 u, float phi, float lobe) {
+    return scatter_direction(scatter_sample_cone(cone, u.y, u.z), phi, lobe);
+  }
 
   ScatterLobes lobes;
   ScatterChoice choice = scatter_choice_of(lobes);
+  PairDensity around_tt{lobes.n_tt}, around_trt{lobes.n_trt};
 };
 
 /// R, TT and a diffuse lobe that holds what remains.
 struct Zhu {
-  explicit Zhu(const FiberView& v) : lobes(scatter_prepare_zhu(make_fiber(v.material, v.strand_color), v.sin_o, v.cos_o)) {}
+  explicit Zhu(const FiberView& v) : lobes(scatter_prepare_zhu(v.fiber(), v.sin_o, v.cos_o)) {}
 
   Vec3 value(FiberAngles a) const { return scatter_zhu(lobes, a.sin_i, a.cos_i, m_cos(a.phi)); }
   float density(FiberAngles a) const { return scatter_pdf_zhu(lobes, choice, a.sin_i, a.cos_i, a.phi); }
+  FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
   ScatterDirection sample(Vec4 u) const { return scatter_sample_zhu(lobes, choice, u); }
   Vec3 albedo() const { return v_splat(lobes.a_r) + lobes.a_tt + lobes.a_rest; }
   void keep(int lobe) {
@@ -70,9 +114,9 @@ struct Zhu {
 /// A highlight, which counts as R, and a diffuse lobe, which counts as what remains.
 struct KajiyaKay {
   explicit KajiyaKay(const FiberView& v) {
-    const ScatterFiber fiber = make_fiber(v.material, v.strand_color);
+    const ScatterFiber fiber = v.fiber();
     lobes = scatter_prepare_marschner(fiber, v.sin_o, v.cos_o);
-    diffuse = tuft_color(v.material, fiber.sigma_a) * max(1 - lobes.a_r, 0.f);
+    diffuse = tuft_color(v.material.material(), fiber.sigma_a) * max(1 - lobes.a_r, 0.f);
     choice = scatter_choice(lobes.a_r, kNone, kNone, diffuse);
   }
 
@@ -80,6 +124,7 @@ struct KajiyaKay {
     return scatter_kajiya_kay(lobes, kNone, a.sin_i, a.cos_i) + diffuse * scatter_diffuse(a.cos_i);
   }
   float density(FiberAngles a) const { return scatter_pdf_kajiya_kay(lobes, choice, a.sin_i, a.cos_i); }
+  FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
   ScatterDirection sample(Vec4 u) const { return scatter_sample_kajiya_kay(lobes, choice, u); }
   Vec3 albedo() const { return v_splat(lobes.a_r) + diffuse; }
   void keep(int lobe) {
@@ -94,12 +139,28 @@ struct KajiyaKay {
 
 /// The near field: R, TT, TRT and what remains, each leaving at the azimuth of its offset h.
 struct Chiang {
-  explicit Chiang(const FiberView& v)
-      : near(scatter_prepare_chiang(make_fiber(v.material, v.strand_color), v.sin_o, v.cos_o, v.h)) {}
+  explicit Chiang(const FiberView& v) : near(v.material.chiang(v.strand_color, v.sin_o, v.cos_o, v.h)) {}
 
   Vec3 value(FiberAngles a) const { return scatter_chiang(near, a.sin_i, a.cos_i, a.phi); }
-  float density(FiberAngles a) const { return scatter_pdf_chiang(near, choice, a.sin_i, a.cos_i, a.phi); }
-  ScatterDirection sample(Vec4 u) const { return scatter_sample_chiang(near, choice, u); }
+  float density(FiberAngles a) const { return weigh(a).density; }
+  /// scatter_chiang() and scatter_pdf_chiang(): the same lobes, weighted by their energies and by how often they are chosen.
+  FiberWeight weigh(FiberAngles a) const {
+    const auto lobe = [&](const ScatterCone& cone, float center) {
+      return scatter_cone_value(cone, a.sin_i, a.cos_i) * scatter_logistic(scatter_wrap(a.phi - center), near.rate);
+    };
+    const float r = lobe(near.r, near.phi_r), tt = lobe(near.tt, near.phi_tt), trt = lobe(near.trt, near.phi_trt),
+                rest = scatter_cone_value(near.rest, a.sin_i, a.cos_i) * kInvTwoPi;
+    return {v_splat(near.a_r * r) + near.a_tt * tt + near.a_trt * trt + near.a_rest * rest,
+            choice.r * r + choice.tt * tt + choice.trt * trt + choice.rest * rest};
+  }
+  /// scatter_sample_chiang(), drawing from the chosen lobe alone.
+  ScatterDirection sample(Vec4 u) const {
+    const float lobe = scatter_chosen(choice, u.x);
+    if (lobe == 3) return Marschner::draw(near.rest, u, kTwoPi * u.w, lobe);
+    const ScatterCone& cone = lobe == 0 ? near.r : lobe == 1 ? near.tt : near.trt;
+    const float center = lobe == 0 ? near.phi_r : lobe == 1 ? near.phi_tt : near.phi_trt;
+    return Marschner::draw(cone, u, center + scatter_sample_logistic(u.w, near.rate), lobe);
+  }
   Vec3 albedo() const { return v_splat(near.a_r) + near.a_tt + near.a_trt + near.a_rest; }
   void keep(int lobe) {
     if (lobe != 0) near.a_r = 0;
@@ -115,12 +176,12 @@ struct Chiang {
 /// R, TT, TRT without glints, and the glints, which count as what remains.
 struct Sadeghi {
   explicit Sadeghi(const FiberView& v)
-      : lobes(scatter_prepare_sadeghi(make_artist_fiber(v.material),
-                                      kernel::scatter_crossing_color(fiber_absorption(v.material, v.strand_color)), v.sin_o,
-                                      v.cos_o)) {}
+      : lobes(scatter_prepare_sadeghi(make_artist_fiber(v.material.material()), scatter_crossing_color(v.fiber().sigma_a),
+                                      v.sin_o, v.cos_o)) {}
 
   Vec3 value(FiberAngles a) const { return scatter_sadeghi(lobes, a.sin_i, a.cos_i, m_cos(a.phi)); }
   float density(FiberAngles a) const { return scatter_pdf_sadeghi(lobes, choice, a.sin_i, a.cos_i, a.phi); }
+  FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
   ScatterDirection sample(Vec4 u) const { return scatter_sample_sadeghi(lobes, choice, u); }
   Vec3 albedo() const { return lobes.a_r + lobes.a_tt + lobes.a_trt + lobes.a_glint; }
   void keep(int lobe) {

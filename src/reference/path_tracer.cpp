@@ -58,6 +58,12 @@ struct MeshMaterial {
   float specular, roughness;
 };
 
+std::vector<FiberMaterial> fibers_of(const std::vector<GroomInstance>& grooms) {
+  std::vector<FiberMaterial> all;
+  for (const GroomInstance& g : grooms) all.emplace_back(g.material, FiberMaterial::Tables::kWherePossible);
+  return all;
+}
+
 std::vector<MeshMaterial> materials(const std::vector<MeshInstance>& meshes) {
   std::vector<MeshMaterial> all;
   for (const MeshInstance& m : meshes) all.push_back({m.specular, m.roughness});
@@ -70,6 +76,7 @@ struct PathTracer::State {
   PathSettings settings;
   CameraView view, previous_view;
   std::vector<GroomInstance> grooms;
+  std::vector<FiberMaterial> fibers;  ///< [grooms]
   std::vector<MeshMaterial> mesh_materials;
   bool environment_visible;
   RayScene rays;
@@ -95,7 +102,8 @@ PathTracer::State::State(const Scene& scene, const PathSettings& s)
     : settings(s), view(make_camera_view(scene.camera, scene.settings.width, scene.settings.height)),
       previous_view(s.previous_camera ? make_camera_view(*s.previous_camera, scene.settings.width, scene.settings.height)
                                       : view),
-      grooms(scene.grooms), mesh_materials(materials(scene.meshes)), environment_visible(scene.environment.visible),
+      grooms(scene.grooms), fibers(fibers_of(grooms)), mesh_materials(materials(scene.meshes)),
+      environment_visible(scene.environment.visible),
       rays(scene, s.integrator == Integrator::kDual ? CurveShape::kFlat : s.curve_shape), lights(scene) {
   PELAGE_CHECK(settings.max_bounces >= 1);
   if (settings.integrator == Integrator::kSingle) settings.max_bounces = 1;
@@ -117,12 +125,11 @@ Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
   const Vec3 to_eye = normalize(-ray.direction);
   if (hit.kind == SceneHit::Kind::kStrand) {
     const StrandPlace place = rays.strand_place(hit);
-    const GroomInstance& groom = grooms[hit.object];
     const Vec3 color = color_of(hit.object, place);
     const Vec3 off_axis = ray.origin + ray.direction * hit.distance - place.axis,
                side = normalize(cross(to_eye, place.tangent));
     const float h = place.radius > 0 ? std::clamp(dot(off_axis, side) / place.radius, -1.f, 1.f) : 0.f;
-    return {place.axis, place.tangent, {}, place.radius, FiberBsdf(groom.material, color, place.tangent, to_eye, h)};
+    return {place.axis, place.tangent, {}, place.radius, FiberBsdf(fibers[hit.object], color, place.tangent, to_eye, h)};
   }
   Surface s = rays.surface(hit);
   if (dot(s.geometric_normal, to_eye) < 0) s.normal = -s.normal, s.geometric_normal = -s.geometric_normal;
