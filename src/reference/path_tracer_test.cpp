@@ -68,7 +68,7 @@ TEST(PathTracer, OneFiberUnderALight) {
         settings.integrator = integrator, settings.curve_shape = shape;
         const PathSample s = PathTracer(scene, settings).sample(8, 7, 0);
         ASSERT_TRUE(s.hair);
-        const FiberBsdf fiber(scene.grooms[0].material, {}, s.tangent, {0, 0, 1}, 0);
+        const FiberBsdf fiber(FiberMaterial(scene.grooms[0].material), {}, s.tangent, {0, 0, 1}, 0);
         const Vec3 expected = fiber.evaluate(-light.direction) * light.intensity;
         EXPECT_NEAR(s.radiance.x, expected.x, 1e-4f * expected.x + 1e-7f) << i;
         EXPECT_NEAR(s.radiance.z, expected.z, 1e-4f * expected.z + 1e-7f) << i;
@@ -86,7 +86,7 @@ TEST(PathTracer, OneFiberInAnEnvironment) {
   scene.environment.rotation = 0.7f;
   const PathTracer tracer(scene, {});
   const Estimate e = estimate(tracer, scene, 64);
-  const FiberBsdf fiber(scene.grooms[0].material, {}, tracer.sample(8, 8, 0).tangent, {0, 0, 1}, 0);
+  const FiberBsdf fiber(FiberMaterial(scene.grooms[0].material), {}, tracer.sample(8, 8, 0).tangent, {0, 0, 1}, 0);
   const EnvironmentSampler environment(scene.environment);
   double sum = 0;
   constexpr int kRows = 700, kColumns = 1400;
