@@ -148,26 +148,21 @@ std::vector<std::string> ordered_channels(const Imf::ChannelList& channels) {
   return names;
 }
 
-/// Slices of interleaved pixels of type T; `first` is channel 0 of the picture's first pixel, which has the coordinates of
-/// `origin`.
+/// Slices of interleaved pixels of type T, which fill `window`.
 template <class T>
-Imf::FrameBuffer interleaved(const std::vector<std::string>& channels, Imf::PixelType type, T* first, std::size_t width,
-                             Imath::V2i origin) {
-  const std::size_t pixel = channels.size() * sizeof(T), row = pixel * width;
+Imf::FrameBuffer interleaved(const std::vector<std::string>& channels, Imf::PixelType type, const T* pixels,
+                             const Imath::Box2i& window) {
+  const std::size_t pixel = channels.size() * sizeof(T);
+  const std::size_t row = pixel * static_cast<std::size_t>(window.max.x - window.min.x + 1);
   Imf::FrameBuffer buffer;
   for (std::size_t c = 0; c < channels.size(); ++c)
-    // The library wants the address that pixel (0, 0) would have, which may be none of ours: no pointer arithmetic.
-    buffer.insert(channels[c], Imf::Slice(type,
-                                          reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first + c) -
-                                                                  static_cast<std::uintptr_t>(origin.x) * pixel -
-                                                                  static_cast<std::uintptr_t>(origin.y) * row),
-                                          pixel, row));
+    buffer.insert(channels[c], Imf::Slice::Make(type, pixels + c, window, pixel, row));
   return buffer;
 }
 
 template <class T>
-void write_pixels(Imf::OutputFile& file, const Image& image, Imf::PixelType type, T* pixels) {
-  file.setFrameBuffer(interleaved(image.channels, type, pixels, static_cast<std::size_t>(image.width), {0, 0}));
+void write_pixels(Imf::OutputFile& file, const Image& image, Imf::PixelType type, const T* pixels) {
+  file.setFrameBuffer(interleaved(image.channels, type, pixels, file.header().dataWindow()));
   file.writePixels(image.height);
 }
 
@@ -184,8 +179,7 @@ Image read_exr(const ByteSource& source) {
     Imf::InputFile file(input);
     const Imath::Box2i& window = file.header().dataWindow();
     Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, ordered_channels(file.header().channels()));
-    file.setFrameBuffer(
-        interleaved(image.channels, Imf::FLOAT, image.pixels.data(), static_cast<std::size_t>(image.width), window.min));
+    file.setFrameBuffer(interleaved(image.channels, Imf::FLOAT, image.pixels.data(), window));
     file.readPixels(window.min.y, window.max.y);
     return image;
   } catch (const Error&) {
@@ -205,7 +199,7 @@ std::string encode_exr(const std::string& name, const Image& image, bool full_fl
     {
       Imf::OutputFile file(output, header);  // complete when it goes
       if (full_float) {
-        write_pixels(file, image, type, const_cast<float*>(image.pixels.data()));  // the library only reads
+        write_pixels(file, image, type, image.pixels.data());
       } else {
         std::vector<half> halves(image.pixels.begin(), image.pixels.end());
         write_pixels(file, image, type, halves.data());

@@ -187,7 +187,9 @@ class PngWriter {
  private:
   static void to_row(const float* from, std::size_t values, bool sixteen_bits, png_byte* to) {
     const auto level = [](float x, float most) {
-      return static_cast<unsigned>((x > 0 ? std::min(x, 1.f) : 0.f) * most + 0.5f);  // NaN: 0
+      const float share = x > 0 ? std::min(x, 1.f) : 0.f;  // of NaN: 0
+      const float next_half = share * most + 0.5f;
+      return static_cast<unsigned>(next_half);
     };
     for (std::size_t i = 0; i < values; ++i) {
       if (!sixteen_bits) {

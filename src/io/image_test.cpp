@@ -64,6 +64,14 @@ TEST(Images, PngKeepsWhatItIsGiven) {
   }
 }
 
+TEST(Images, SixteenBitsAreKeptInTheirOrder) {
+  const TemporaryFolder folder;
+  Image image(2, 1, {"Y"});
+  image.pixels = {0x1234 / 65535.f, 0xfe01 / 65535.f};
+  write_image(folder / "a.png", image, true);
+  EXPECT_EQ(read_image(folder / "a.png", false).pixels, image.pixels);
+}
+
 TEST(Images, PngIsDecodedToLinearWhenAsked) {
   const TemporaryFolder folder;
   Image image(1, 1, {"R", "G", "B", "A"});
@@ -99,6 +107,32 @@ TEST(Images, ExrChannelsComeInTheirUsualOrderLayerByLayer) {
   const std::vector<std::size_t> from = {5, 7, 3, 2, 6, 1, 9, 8, 4, 0};
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     ASSERT_EQ(back.pixels[i], image.pixels[i / 10 * 10 + from[i % 10]]) << i;
+}
+
+TEST(Images, AnExrHeaderIsNotBelieved) {
+  const TemporaryFolder folder;
+  write_image(folder / "a.exr", pattern({"R", "G"}));
+  const std::string whole = kit::slurp(folder / "a.exr");
+  const auto expect = [&](const std::string& attribute, std::size_t byte, const std::string& value, const char* problem) {
+    std::string bytes = whole;
+    const std::size_t at = bytes.find(attribute);
+    ASSERT_NE(at, std::string::npos);
+    bytes.replace(at + attribute.size() + byte, value.size(), value);
+    kit::spill(folder / "a.exr", bytes);
+    try {
+      read_image(folder / "a.exr");
+      ADD_FAILURE() << attribute;
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), testing::HasSubstr(problem));
+    }
+  };
+  const std::string window("dataWindow\0box2i\0\x10\0\0\0", 21), size("screenWindowWidth\0float\0", 24);
+  expect(size, 0, "\xff\xff\xff\x7f", "the header ends early");
+  expect(window, 8, "\xff\xff\xff\x7f", "65536 × 65536 are read");
+  expect(window, 8, std::string("\xff\xff\0\0\xff\xff\0\0", 8), "cannot be in");
+  expect(window, 8, "\xff\xff\xff\xff", "0 × 5");
+  // A channel of every other pixel: name, type, linearity, sampling.
+  expect(std::string("G\0\1\0\0\0\0\0\0\0", 10), 0, "\2", "lower resolution");
 }
 
 TEST(Images, HdrKeepsEightBitsOfTheLargestColor) {
@@ -289,7 +323,7 @@ TEST(Images, APngThatCannotHoldItsPixelsIsRefusedBeforeMemoryIsAskedFor) {
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("65536 × 65536 pixels cannot be in"));
   }
-  EXPECT_THROW(read_bytes(png(65537, 1, 1, 0, "", "\0")), Error);
+  EXPECT_THROW(read_bytes(png(65537, 1, 1, 0, "", std::string(1, '\0'))), Error);
 }
 
 // Radiance pictures made by hand: what no writer of ours makes.
@@ -359,7 +393,7 @@ std::string jpeg(const std::vector<unsigned char>& pixels, unsigned width, int c
   }
   jpeg_finish_compress(&jpeg);
   jpeg_destroy_compress(&jpeg);
-  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  std::string bytes(reinterpret_cast<const char*>(data), size);
   std::free(data);
   return bytes;
 }
