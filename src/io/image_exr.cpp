@@ -68,7 +68,7 @@ class HeaderCheck {
 
   void run() {
     constexpr std::uint32_t kSeveralParts = 0x1000;
-    at_ = 4;
+    number();  // by which the format is known
     const bool several = number() & kSeveralParts;
     while (attributes() > 0 && several) {
     }
@@ -86,11 +86,11 @@ class HeaderCheck {
     return count;
   }
   std::string_view text() {
-    const auto* const end = static_cast<const char*>(std::memchr(bytes_.data() + at_, 0, bytes_.size() - at_));
-    if (!end) fail();
-    const std::string_view found(bytes_.data() + at_, end);
-    at_ += found.size() + 1;
-    return found;
+    const std::string_view left(bytes_.data() + at_, bytes_.size() - at_);
+    const std::size_t end = left.find('\0');
+    if (end == left.npos) fail();
+    at_ += end + 1;
+    return left.substr(0, end);
   }
   std::uint32_t number() {
     if (bytes_.size() - at_ < 4) fail();

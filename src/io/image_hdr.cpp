@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <vector>
 
@@ -114,12 +113,11 @@ class HdrReader {
     return static_cast<std::uint8_t>(bytes_[at_++]);
   }
   std::string_view line() {
-    const char* const begin = bytes_.data() + at_;
-    const void* const end = std::memchr(begin, '\n', bytes_.size() - at_);
-    if (!end) fail("the header ends early", "the file is truncated or damaged");
-    const std::string_view text(begin, static_cast<const char*>(end));
-    at_ += text.size() + 1;
-    return text;
+    const std::string_view left(bytes_.data() + at_, bytes_.size() - at_);
+    const std::size_t end = left.find('\n');
+    if (end == left.npos) fail("the header ends early", "the file is truncated or damaged");
+    at_ += end + 1;
+    return left.substr(0, end);
   }
   template <class T>
   T number(std::string_view text) const {
