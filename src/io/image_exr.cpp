@@ -5,6 +5,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfTileDescription.h>
 #include <fmt/format.h>
 #include <half.h>
 #include <pelage/error.h>
@@ -60,66 +61,98 @@ class MemoryOutput : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
-// Every attribute of the headers must be inside the file: the library asks for its memory before it reads it.
-//   header: { name \0 type \0 size data }… \0; the list of headers of a file of several parts ends with an empty one
-class HeaderCheck {
- public:
-  HeaderCheck(const ByteSource& source, const std::vector<char>& bytes) : source_(source), bytes_(bytes) {}
+struct KnownAttribute {
+  std::string_view name, type;
+  std::size_t size;  // bytes; 0: any
+};
+constexpr KnownAttribute kKnown[] = {{"channels", "chlist", 0},
+                                     {"compression", "compression", 1},
+                                     {"dataWindow", "box2i", 16},
+                                     {"displayWindow", "box2i", 16},
+                                     {"lineOrder", "lineOrder", 1},
+                                     {"pixelAspectRatio", "float", 4},
+                                     {"screenWindowCenter", "v2f", 8},
+                                     {"screenWindowWidth", "float", 4},
+                                     {"tiles", "tiledesc", 9},
+                                     {"chunkCount", "int", 4},
+                                     {"version", "int", 4},
+                                     {"name", "string", 0},
+                                     {"type", "string", 0}};
 
-  void run() {
+// The library asks for memory on the word of a header before it reads what is there. So every attribute has to be inside the
+// file, those that say how pixels are stored have to be of their type and size, and all others are made unknown to it.
+//   header: { name \0 type \0 size data }… \0; the list of headers of a file of several parts ends with an empty one
+class HeaderGuard {
+ public:
+  HeaderGuard(const ByteSource& source, std::vector<char>& bytes) : source_(source), bytes_(bytes) {}
+
+  /// Number of headers.
+  int run() {
     constexpr std::uint32_t kSeveralParts = 0x1000;
     number();  // by which the format is known
     const bool several = number() & kSeveralParts;
-    while (attributes() > 0 && several) {
+    int headers = 0;
+    while (attributes() > 0) {
+      ++headers;
+      if (!several) break;
     }
+    return headers;
   }
 
  private:
   std::size_t attributes() {
     std::size_t count = 0;
-    for (; !text().empty(); ++count) {
-      text();
-      const std::size_t size = number();
-      if (size > bytes_.size() - at_) fail();
-      at_ += size;
+    for (std::string_view name; !(name = text()).empty(); ++count) {
+      const std::size_t type_at = at_;
+      const std::string_view type = text();
+      if (type.empty()) fail("an attribute without a type");
+      const std::size_t size = number(), end = at_ + size;
+      if (size > bytes_.size() - at_) fail("the header ends early");
+      const auto* const known =
+          std::find_if(std::begin(kKnown), std::end(kKnown), [&](const auto& k) { return k.name == name; });
+      if (known == std::end(kKnown)) bytes_[type_at] = '?';
+      else check(*known, type, size);
+      at_ = end;
     }
     return count;
+  }
+  void check(const KnownAttribute& known, std::string_view type, std::size_t size) {
+    constexpr std::size_t kChannel = 16;  // bytes behind its name
+    const std::size_t end = at_ + size;
+    if (known.type != type || (known.size != 0 && known.size != size)) fail("an attribute of the wrong type or size");
+    if (known.name == "chunkCount" && number() > bytes_.size() / 8) fail("more parts than the file can hold");
+    if (known.name == "tiles" && (number() > kLargestTile || number() > kLargestTile)) fail("tiles too large");
+    if (known.name != "channels") return;
+    while (!text().empty()) at_ = std::min(at_ + kChannel, bytes_.size());
+    if (at_ != end) fail("channels that end elsewhere than they say");
   }
   std::string_view text() {
     const std::string_view left(bytes_.data() + at_, bytes_.size() - at_);
     const std::size_t end = left.find('\0');
-    if (end == left.npos) fail();
+    if (end == left.npos) fail("the header ends early");
     at_ += end + 1;
     return left.substr(0, end);
   }
   std::uint32_t number() {
-    if (bytes_.size() - at_ < 4) fail();
+    if (bytes_.size() - at_ < 4) fail("the header ends early");
     std::uint32_t value = 0;
     for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes_[at_ + i]);
     at_ += 4;
     return value;
   }
-  [[noreturn]] void fail() const {
-    throw Error(source_.name(), fmt::format("byte {}", at_), "the header ends early", "the file is truncated or damaged");
+  [[noreturn]] void fail(const char* problem) const {
+    throw Error(source_.name(), fmt::format("byte {}", at_), problem, "the file is truncated or damaged");
   }
 
+  static constexpr std::uint32_t kLargestTile = 1 << 16;  // pixels a side
+
   const ByteSource& source_;
-  const std::vector<char>& bytes_;
+  std::vector<char>& bytes_;
   std::size_t at_ = 0;
 };
 
-// Read by itself before the file is opened, which would ask for memory on the word of its numbers.
-Imf::Header read_header(MemoryInput& input) {
-  Imf::Header header;
-  std::array<unsigned char, 8> start;  // magic number, version
-  input.read(reinterpret_cast<char*>(start.data()), static_cast<int>(start.size()));
-  int version = start[4] | start[5] << 8 | start[6] << 16;
-  header.readFrom(input, version);
-  input.seekg(0);
-  return header;
-}
-
 void check_header(const ByteSource& source, const Imf::Header& header) {
+  constexpr std::int64_t kMostRows = 256;  // that are unpacked together
   const Imath::Box2i& window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
@@ -130,6 +163,27 @@ void check_header(const ByteSource& source, const Imf::Header& header) {
       throw Error(source.name(), c.name(), "a channel of lower resolution", "convert it to channels of one size");
   }
   check_image_size(source, width, height, channels);
+  check_image_size(source, width, std::max(height, kMostRows), channels);
+  if (!header.hasTileDescription()) return;
+  const Imf::TileDescription& tiles = header.tileDescription();
+  if (tiles.xSize == 0 || tiles.ySize == 0) throw Error(source.name(), "tiles", "no pixels", "the file is damaged");
+  const std::int64_t count = (width / tiles.xSize + 1) * (height / tiles.ySize + 1);
+  if (static_cast<std::uint64_t>(count) > source.size())
+    throw Error(source.name(), "tiles", fmt::format("{} cannot be in {} bytes", count, source.size()), "the file is damaged");
+  check_image_size(source, tiles.xSize, tiles.ySize, channels);
+}
+
+// Headers are read by themselves before the file is opened, which asks for memory on the word of their numbers.
+void check_headers(const ByteSource& source, MemoryInput& input, int count) {
+  std::array<unsigned char, 8> start;  // magic number, version
+  input.read(reinterpret_cast<char*>(start.data()), static_cast<int>(start.size()));
+  int version = start[4] | start[5] << 8 | start[6] << 16;
+  for (int i = 0; i < count; ++i) {
+    Imf::Header header;
+    header.readFrom(input, version);
+    check_header(source, header);
+  }
+  input.seekg(0);
 }
 
 // Channels stand in the file by name, "A" before "B": colors are put into their usual order.
@@ -171,11 +225,11 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 }  // namespace
 
 Image read_exr(const ByteSource& source) {
-  const std::vector<char> bytes = source.read_all();
-  HeaderCheck(source, bytes).run();
+  std::vector<char> bytes = source.read_all();
+  const int headers = HeaderGuard(source, bytes).run();
   try {
     MemoryInput input(source.name(), bytes);
-    check_header(source, read_header(input));
+    check_headers(source, input, headers);
     Imf::InputFile file(input);
     const Imath::Box2i& window = file.header().dataWindow();
     Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, ordered_channels(file.header().channels()));

@@ -24,9 +24,9 @@ struct Gather {
 
 Vec2 screen_place(const Gather& g, std::uint32_t key) {
   const auto width = static_cast<std::uint32_t>(g.view.width), samples = static_cast<std::uint32_t>(g.sample_positions.size());
-  const std::uint32_t pixel = key / samples;
+  const std::uint32_t pixel = key / samples, row = pixel / width;
   const Vec2 in_pixel = g.sample_positions[key % samples];
-  return {static_cast<float>(pixel % width) + in_pixel.x, static_cast<float>(pixel / width) + in_pixel.y};
+  return {static_cast<float>(pixel % width) + in_pixel.x, static_cast<float>(row) + in_pixel.y};
 }
 
 Vec3 direction_to_eye(const CameraView& view, Vec3 position) {

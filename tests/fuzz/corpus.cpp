@@ -107,6 +107,6 @@ int main(int argc, char** argv) {
   write_image(folder("image_exr") + "half.exr", image);
   write_image(folder("image_exr") + "float.exr", image, true);
   write_image(folder("image_hdr") + "runs.hdr", Image(9, 2, {"R", "G", "B"}));
-  spill(folder("image_hdr") + "repeated", std::string("#?RADIANCE\nEXPOSURE=2\n\n-Y 2 +X 2\n\x80\x40\x20\x81\1\1\1\3", 47));
+  spill(folder("image_hdr") + "repeated", "#?RADIANCE\nEXPOSURE=2\n\n-Y 2 +X 2\n\x80\x40\x20\x81\1\1\1\3");
   return 0;
 }
