@@ -51,7 +51,7 @@ HWY_INLINE void enter(PixelKey key, std::uint32_t mask, PixelKey* pixel) {
 /// Depth test and minimum of fragments begin … end − 1, whose pixels this thread owns.
 template <int kSamples>
 void enter_all(const FragmentBuffer& f, std::size_t begin, std::size_t end, PixelKey* keys) {
-  constexpr std::size_t kAhead = FragmentBuffer::kPadding;
+  constexpr std::size_t kAhead = 24;  // from the second-level cache
   const std::uint32_t *pixel = f.pixel.data(), *id = f.id.data(), *mask = f.mask.data();
   const float* depth = f.depth.data();
   for (std::size_t i = begin; i < end; ++i) {
@@ -74,13 +74,19 @@ class SampleEntry {
     begin_ = f_.count;
     if (count_ == kMostGroups) flush();
   }
+  /// Asks for the keys of fragments that wait, a few after each row: while the walk goes on, they come.
+  HWY_INLINE void prefetch() {
+    constexpr std::size_t kFew = 6;  // rows append four to seven
+    for (std::size_t i = 0; i < kFew; ++i) hwy::Prefetch(keys_ + std::size_t{f_.pixel[asked_ + i]} * kSamples);
+    asked_ = std::min(asked_ + kFew, f_.count);
+  }
   bool full() const { return f_.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity; }
   /// Enters all groups.
   HWY_NOINLINE void flush() {
     std::fill(&f_.pixel[f_.count], &f_.pixel[f_.count] + FragmentBuffer::kPadding, f_.count > 0 ? f_.pixel[0] : 0);
     std::size_t begin = 0;
     for (std::size_t g = 0; g < count_; begin = groups_[g++].end) enter_group(groups_[g].rect, begin, groups_[g].end);
-    f_.count = count_ = begin_ = 0;
+    f_.count = count_ = begin_ = asked_ = 0;
   }
 
  private:
@@ -104,7 +110,8 @@ class SampleEntry {
   TileLocks& locks_;
   PixelKey* keys_;
   Group groups_[kMostGroups];
-  std::size_t count_ = 0, begin_ = 0;
+  std::size_t count_ = 0, begin_ = 0,
+              asked_ = 0;  // groups, first fragment of the open one, first whose keys were not asked for
 };
 
 /// What samples add to the terms of their pixel's center, on the segments of a bunch.
@@ -113,13 +120,15 @@ struct SampleLanes {
   Float along[kSamples];                     // the major axis
   Float shift[kSamples], growth[kSamples];   // rule (1)
   Float past_a[kSamples], past_b[kSamples];  // rule (2)
-  Float highest_shift, lowest_shift, most_growth, least_a, most_b;
+  Float above, below;                        // how far beyond the band's edges pixels have samples inside
+  Float least_a, most_b;
   Uints bit[kSamples];
 };
 
 template <int kSamples>
 HWY_INLINE void place_samples(const wide::RasterBand& band, SampleLanes<kSamples>& o) {
   const auto positions = sample_positions(kSamples);
+  Float highest_shift, lowest_shift, most_growth;
   for (std::size_t i = 0; i < kSamples; ++i) {
     const Float x(positions[i].x - 0.5f), y(positions[i].y - 0.5f);
     const Float along = select(band.x_major, x, y), across = select(band.x_major, y, x);
@@ -129,12 +138,15 @@ HWY_INLINE void place_samples(const wide::RasterBand& band, SampleLanes<kSamples
     o.growth[i] = wide::raster_sample_growth(band, along);
     o.past_a[i] = wide::raster_cap_shift(band.cap_a, along, across);
     o.past_b[i] = wide::raster_cap_shift(band.cap_b, along, across);
-    o.highest_shift = i == 0 ? o.shift[i] : max(o.highest_shift, o.shift[i]);
-    o.lowest_shift = i == 0 ? o.shift[i] : min(o.lowest_shift, o.shift[i]);
-    o.most_growth = i == 0 ? o.growth[i] : max(o.most_growth, o.growth[i]);
+    highest_shift = i == 0 ? o.shift[i] : max(highest_shift, o.shift[i]);
+    lowest_shift = i == 0 ? o.shift[i] : min(lowest_shift, o.shift[i]);
+    most_growth = i == 0 ? o.growth[i] : max(most_growth, o.growth[i]);
     o.least_a = i == 0 ? o.past_a[i] : min(o.least_a, o.past_a[i]);
     o.most_b = i == 0 ? o.past_b[i] : max(o.most_b, o.past_b[i]);
   }
+  constexpr float kRoundings = 0.02f;
+  o.above = most_growth - lowest_shift + Float(kRoundings - 0.5f);
+  o.below = most_growth + highest_shift + Float(kRoundings + 0.5f);
 }
 
 HWY_INLINE Uints with_bit(Uints mask, Mask m, Uints bit) {
@@ -171,48 +183,59 @@ HWY_NOINLINE void make_room(const SegmentLanes& w, const VisitedRows& visited, S
   entry.flush();
 }
 
-/// One column of each lane: appends the pixels with covered samples.
+/// Takes the samples of the pixels at (u, v) that the caps of their bands cut off out of `mask`.
 template <int kSamples>
+HWY_INLINE Uints cut_by_caps(const wide::RasterBand& band, const SampleLanes<kSamples>& o, Float u, Float v, Uints mask) {
+  const Mask some = nonzero(mask);
+  const Float side_a = wide::raster_cap_side(band.cap_a, u, v, band.u, band.v);
+  const Float side_b = wide::raster_cap_side(band.cap_b, u, v, band.end_u, band.end_v);
+  // Adding rounds monotonically: where the least of the samples is past the cap, all are.
+  if (wide::any(some && !wide::raster_past_cap(side_a, o.least_a))) {
+    Uints past = hn::Zero(kUint);
+    for (int i = 0; i < kSamples; ++i) past = with_bit(past, wide::raster_past_cap(side_a, o.past_a[i]), o.bit[i]);
+    mask = hn::And(mask, past);
+  }
+  if (wide::any(some && !wide::raster_before_cap(side_b, o.most_b))) {
+    Uints before = hn::Zero(kUint);
+    for (int i = 0; i < kSamples; ++i) before = with_bit(before, wide::raster_before_cap(side_b, o.past_b[i]), o.bit[i]);
+    mask = hn::And(mask, before);
+  }
+  return mask;
+}
+
+/// Bits of the samples in the columns around `u` that lie between the ends of their bands.
+template <int kSamples>
+HWY_INLINE Uints between_ends(const wide::RasterBand& band, const SampleLanes<kSamples>& o, Float u, Mask open) {
+  Uints inside = hn::Set(kUint, (1u << kSamples) - 1);
+  if (!wide::any(open && (u - Float(0.5f) < band.first || u + Float(0.5f) > band.last))) return inside;
+  inside = hn::Zero(kUint);
+  for (int i = 0; i < kSamples; ++i) inside = with_bit(inside, wide::raster_between_ends(band, u + o.along[i]), o.bit[i]);
+  return inside;
+}
+
+/// One column of each lane: appends the pixels with covered samples. kUncut: neither caps nor ends reach into it.
+template <int kSamples, bool kUncut>
 HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>& o, Float column, Mask on_band,
-                             Uints first_pixel, FragmentBuffer& f, VisitedRows& visited, SampleEntry<kSamples>& entry) {
+                             FragmentBuffer& f, VisitedRows& visited, SampleEntry<kSamples>& entry) {
   const wide::RasterBand& band = w.band;
   const Float u = column + Float(0.5f), s = u - band.u;
   const Float center = wide::raster_band_center(band, s), half = wide::raster_band_half(band, s);
   // Rows beyond which no sample is covered, with a margin for roundings.
-  const Float reach = half + (o.most_growth + Float(0.02f));
-  const Float highest = min(floor(center + (reach - o.lowest_shift) - Float(0.5f)), w.rows - Float(1.0f));
-  Float row = max(ceil(center - (reach + o.highest_shift) - Float(0.5f)), Float(0.0f));
+  const Float highest = min(floor(center + (half + o.above)), w.rows - Float(1.0f));
+  Float row = max(ceil(center - (half + o.below)), Float(0.0f));
   Mask open = on_band && row <= highest;
   if (!wide::any(open)) return;
   visited.add(open, row, highest);
-  Uints inside = hn::Set(kUint, (1u << kSamples) - 1);
-  const Mask at_end = open && (u - Float(0.5f) < band.first || u + Float(0.5f) > band.last);
-  if (wide::any(at_end)) {
-    inside = hn::Zero(kUint);
-    for (int i = 0; i < kSamples; ++i) inside = with_bit(inside, wide::raster_between_ends(band, u + o.along[i]), o.bit[i]);
-  }
   const Uints pixel_depth = hn::BitCast(kUint, wide::raster_band_depth(band, s).v);
-  Uints pixel = hn::Add(first_pixel, hn::Mul(hn::BitCast(kUint, hn::NearestInt(row.v)), w.row_step));
+  const Uints inside = kUncut ? hn::Zero(kUint) : between_ends(band, o, u, open);
+  Uints pixel = pixel_in_column(w, first_in_column(w, column), row);
   do {
     const Float v = row + Float(0.5f), above_center = v - center;
     Uints mask = hn::Zero(kUint);
     for (int i = 0; i < kSamples; ++i)
       mask = with_bit(mask, wide::raster_sample_covered(above_center, o.shift[i], half, o.growth[i]), o.bit[i]);
-    mask = hn::IfThenElseZero(hn::RebindMask(kUint, open.m), hn::And(mask, inside));
-    const Mask some = nonzero(mask);
-    const Float side_a = wide::raster_cap_side(band.cap_a, u, v, band.u, band.v);
-    const Float side_b = wide::raster_cap_side(band.cap_b, u, v, band.end_u, band.end_v);
-    // Adding rounds monotonically: where the least of the samples is past the cap, all are.
-    if (wide::any(some && !wide::raster_past_cap(side_a, o.least_a))) {
-      Uints past = hn::Zero(kUint);
-      for (int i = 0; i < kSamples; ++i) past = with_bit(past, wide::raster_past_cap(side_a, o.past_a[i]), o.bit[i]);
-      mask = hn::And(mask, past);
-    }
-    if (wide::any(some && !wide::raster_before_cap(side_b, o.most_b))) {
-      Uints before = hn::Zero(kUint);
-      for (int i = 0; i < kSamples; ++i) before = with_bit(before, wide::raster_before_cap(side_b, o.past_b[i]), o.bit[i]);
-      mask = hn::And(mask, before);
-    }
+    mask = hn::IfThenElseZero(hn::RebindMask(kUint, open.m), mask);
+    if (!kUncut) mask = cut_by_caps(band, o, u, v, hn::And(mask, inside));
     if (entry.full()) make_room(w, visited, entry);
     const Compressor compress(nonzero(mask));
     hn::StoreU(compress(pixel), kUint, &f.pixel[f.count]);
@@ -220,6 +243,7 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>&
     hn::StoreU(compress(w.id), kUint, &f.id[f.count]);
     hn::StoreU(compress(mask), kUint, &f.mask[f.count]);
     f.count += compress.count();
+    entry.prefetch();
     row = row + Float(1.0f);
     pixel = hn::Add(pixel, w.row_step);
     open = open && row <= highest;
@@ -237,20 +261,20 @@ void samples_of_block(const ScreenBlock& block, int width, int height, FragmentB
     if (!load_segments(block, j, width, height, 0.0f, 1.0f, w)) continue;
     place_samples(w.band, o);
     VisitedRows visited;
-    const auto visit = [&](Float column, Mask on_band) {
-      const Uints first_pixel = hn::Mul(hn::BitCast(kUint, hn::NearestInt(column.v)), w.column_step);
-      visit_column<kSamples>(w, o, column, on_band, first_pixel, f, visited, entry);
-    };
+    const wide::Vec2 uncut = wide::raster_uncut_columns(w.band);
     // Caps cut the columns at either end of a segment. So that few steps have to look at them, and few branches are a
     // surprise, lanes begin in step, then wait for the longest, and end in step.
     constexpr int kHead = 2;
-    for (int i = 0; i < kHead; ++i) {
-      const Float column = w.column + Float(static_cast<float>(i));
-      visit(column, column <= w.last);
-    }
     const Float body = w.column + Float(static_cast<float>(kHead));
-    for (Float back = max_of_lanes(w.last - body); wide::any(back >= Float(0.0f)); back = back - Float(1.0f))
-      visit(w.last - back, w.last - back >= body);
+    const int most = static_cast<int>(hn::GetLane(max_of_lanes(w.last - body).v));
+    for (int i = -kHead; i <= most; ++i) {
+      const Float column =
+          i < 0 ? w.column + Float(static_cast<float>(i + kHead)) : w.last - Float(static_cast<float>(most - i));
+      const Mask on_band = i < 0 ? column <= w.last : column >= body;
+      const Mask cut = on_band && (column < uncut.x || column > uncut.y);
+      if (wide::any(cut)) visit_column<kSamples, false>(w, o, column, on_band, f, visited, entry);
+      else visit_column<kSamples, true>(w, o, column, on_band, f, visited, entry);
+    }
     entry.close_group(visited.rect(w));
   }
   entry.flush();

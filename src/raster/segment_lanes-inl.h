@@ -23,6 +23,7 @@ struct SegmentLanes {
   wide::Float rows;                    // of the minor axis
   hn::Vec<wide::UintTag> column_step;  // pixels per column …
   hn::Vec<wide::UintTag> row_step;     // … and per row
+  hn::Vec<wide::UintTag> origin;       // takes the high bits out of pixel indices (first_in_column)
   hn::Vec<wide::UintTag> id;
 };
 
@@ -47,6 +48,7 @@ HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width
   const auto one = hn::Set(uint_tag, 1), line = hn::Set(uint_tag, static_cast<std::uint32_t>(width));
   w.column_step = hn::IfThenElse(x_major, one, line);
   w.row_step = hn::IfThenElse(x_major, line, one);
+  w.origin = hn::Set(uint_tag, 0u - 0x4b000000u * (static_cast<std::uint32_t>(width) + 1));
   const wide::Mask none{hn::RebindMask(wide::kFloatTag, hn::Eq(w.id, hn::Set(uint_tag, ScreenBlock::kNoSegment)))};
   const wide::Mask used{hn::FirstN(wide::kFloatTag, block.count - 1 - j)};
   const wide::Mask drawn = used && !none && w.column <= w.last;
@@ -54,11 +56,17 @@ HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width
   return wide::any(drawn);
 }
 
-/// Index of the pixels at (column, row) of each lane.
-HWY_INLINE hn::Vec<wide::UintTag> pixels_at(const SegmentLanes& w, wide::Float column, wide::Float row) {
-  const wide::UintTag uint_tag;
-  const auto whole = [&](wide::Float f) { return hn::BitCast(uint_tag, hn::ConvertTo(wide::IntTag(), f.v)); };
-  return hn::Add(hn::Mul(whole(column), w.column_step), hn::Mul(whole(row), w.row_step));
+// Indices of pixels; those outside the image are anything. The low bits of n + 2^23 are n, which is cheaper than a conversion
+// that looks after numbers that do not fit.
+HWY_INLINE hn::Vec<wide::UintTag> steps(wide::Float n, hn::Vec<wide::UintTag> step) {
+  return hn::Mul(hn::BitCast(wide::UintTag(), (n + wide::Float(8388608.0f)).v), step);
+}
+/// Of each lane's column, what pixel_in_column() asks for. Goes on by `column_step`.
+HWY_INLINE hn::Vec<wide::UintTag> first_in_column(const SegmentLanes& w, wide::Float column) {
+  return hn::Add(steps(column, w.column_step), w.origin);
+}
+HWY_INLINE hn::Vec<wide::UintTag> pixel_in_column(const SegmentLanes& w, hn::Vec<wide::UintTag> first, wide::Float row) {
+  return hn::Add(first, steps(row, w.row_step));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -117,3 +117,20 @@ PELAGE_FN Mask raster_pixel_between_caps(RasterBand r, Float side_a, Float side_
   return (side_a >= reach_a) && (side_b < Float(0.0f) - reach_b) && (u - Float(0.51f) >= r.first) &&
          (u + Float(0.51f) <= r.last);
 }
+// Columns of pixels, as (lowest, highest) number, in which caps and ends cut nothing off the band. A covered point at s along
+// the band is off its center line by at most H, the larger of the two half heights; it is past the cap c of point a where
+// (c.x + m c.y) s >= |c.y| H, and likewise before that of b. 0.02 pixels are for roundings. Empty where a cap points backwards.
+PELAGE_FN Float raster_cap_reach(Vec2 cap, Float slope, Float du, Float half) {
+  Float along = select(du > Float(0.0f), cap.x + slope * cap.y, Float(0.0f) - (cap.x + slope * cap.y));
+  Float needed = abs(cap.y) * half + (abs(cap.x) + abs(cap.y)) * Float(0.02f);
+  return select(along > Float(0.0f), needed / along, Float(1.0e9f));
+}
+PELAGE_FN Vec2 raster_uncut_columns(RasterBand r) {
+  Float du = r.end_u - r.u;
+  Float half = max(r.half, raster_band_half(r, du));
+  Float reach_a = raster_cap_reach(r.cap_a, r.slope, du, half);
+  Float reach_b = raster_cap_reach(r.cap_b, r.slope, du, half);
+  Float from = select(du > Float(0.0f), r.u + reach_a, r.end_u + reach_b);
+  Float to = select(du > Float(0.0f), r.end_u - reach_b, r.u - reach_a);
+  return Vec2(ceil(from), floor(to) - Float(1.0f));
+}
