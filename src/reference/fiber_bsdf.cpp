@@ -53,13 +53,25 @@ float FiberBsdf::pdf(Vec3 to_light) const {
   return std::visit([a = angles(to_light)](const auto& model) { return model.density(a); }, model_);
 }
 
+Vec3 FiberBsdf::world(const kernel::ScatterDirection& d) const {
+  const Vec3 in_plane = across_ * kernel::m_cos(d.phi) + side_ * kernel::m_sin(d.phi);
+  return normalize(tangent_ * d.sin_i + in_plane * d.cos_i);
+}
+
 FiberSample FiberBsdf::sample(std::array<float, 4> u) const {
   const auto draw = [&](const auto& model) {
     const kernel::ScatterDirection d = model.sample(Vec4(u[0], u[1], u[2], u[3]));
     const FiberAngles a{d.sin_i, d.cos_i, d.phi};
-    const Vec3 in_plane = across_ * kernel::m_cos(d.phi) + side_ * kernel::m_sin(d.phi);
     const FiberWeight w = model.weigh(a);
-    return FiberSample{normalize(tangent_ * d.sin_i + in_plane * d.cos_i), w.value, w.density, static_cast<int>(d.lobe)};
+    return FiberSample{world(d), w.value, w.density, static_cast<int>(d.lobe)};
+  };
+  return std::visit(draw, model_);
+}
+
+ScatteredDirection FiberBsdf::scatter(std::array<float, 4> u) const {
+  const auto draw = [&](const auto& model) {
+    const DrawnDirection drawn = model.draw(Vec4(u[0], u[1], u[2], u[3]));
+    return ScatteredDirection{world(drawn.to), drawn.weight};
   };
   return std::visit(draw, model_);
 }

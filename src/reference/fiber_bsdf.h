@@ -18,6 +18,12 @@ struct FiberSample {
   int lobe;        ///< the lobe that the direction was drawn from
 };
 
+/// A direction of light whose `weight` · radiance has the mean ∫ L_i · evaluate dω_i.
+struct ScatteredDirection {
+  Vec3 direction;  ///< toward the light, unit length
+  Vec3 weight;     ///< 0: the light is absorbed
+};
+
 /// Scattering of a fiber seen from one direction; what does not depend on the light is computed once, by the constructor.
 ///
 /// L_o = ∫ L_i · evaluate dω_i over the whole sphere, and ∫ evaluate dω_i = albedo() within the bounds that
@@ -39,6 +45,9 @@ class FiberBsdf {
   float pdf(Vec3 to_light) const;
   /// u in [0, 1).
   FiberSample sample(std::array<float, 4> u) const;
+  /// The direction of sample(), weighted by the chosen lobe alone where that is quicker: for paths that find light in no other
+  /// way and so need not know how often they would have drawn a direction.
+  ScatteredDirection scatter(std::array<float, 4> u) const;
   /// Integral of evaluate() over the sphere.
   Vec3 albedo() const;
 
@@ -47,6 +56,7 @@ class FiberBsdf {
                              fiber_models::Sadeghi>;
   static Model make_model(const FiberView& view);
   FiberAngles angles(Vec3 to_light) const;
+  Vec3 world(const kernel::ScatterDirection& d) const;
 
   Vec3 tangent_, across_, side_;  // right-handed frame: along, in the plane of to_eye, and the rest
   Model model_;

@@ -154,6 +154,31 @@ TEST(FiberBsdf, ASampleIsWhatItsDirectionEvaluatesTo) {
   }
 }
 
+// Weighed by the chosen lobe alone: the same directions, the same mean of whatever function of the direction, small weights.
+TEST(FiberBsdf, OneLobesWeightHasTheSameMean) {
+  double worst = 0;
+  float largest = 0;
+  for (const Case& c : grid({0.05f, 0.3f}, {0.1f, 0.7f}, {-1.3f, 0.f, 0.6f})) {
+    const FiberBsdf f = bsdf_of(c);
+    constexpr int kSamples = 20000;
+    double sum = 0, sum2 = 0;
+    for (std::uint32_t i = 0; i < kSamples; ++i) {
+      const FiberSample all = f.sample(numbers(i));
+      const ScatteredDirection one = f.scatter(numbers(i));
+      ASSERT_EQ(one.direction, all.direction) << c.name;
+      const double seen = 1 + 0.5 * static_cast<double>(all.direction.x + all.direction.y);
+      const double difference = (luminance(one.weight) - luminance(all.value) / static_cast<double>(all.pdf)) * seen;
+      sum += difference, sum2 += difference * difference;
+      largest = std::max(largest, kernel::v_luminance(one.weight));
+    }
+    const double mean = sum / kSamples, deviation = std::sqrt(std::max(sum2 / kSamples - mean * mean, 0.0) / kSamples);
+    EXPECT_NEAR(mean, 0, 4.5 * deviation + 1e-5) << c.name;
+    EXPECT_LE(largest, kernel::kReflectionMaxWeight) << c.name;
+    worst = std::max(worst, std::fabs(mean));
+  }
+  std::printf("by one lobe: largest difference of means %.1e, largest weight %.3f\n", worst, static_cast<double>(largest));
+}
+
 // The directions that are drawn against the density that is stated: chi-square, 1 in 10^4 by chance over all cases.
 TEST(FiberBsdf, DirectionsFollowTheirDensity) {
   const std::vector<Case> cases = grid({0.05f, 0.25f}, {0.15f, 0.7f}, {-1.1f, 0.1f});
@@ -217,8 +242,11 @@ TEST(FiberBsdf, FiniteAtTheExtremes) {
     const FiberBsdf f(FiberMaterial(m, static_cast<FiberMaterial::Tables>(i / std::size(kModels) % 2)), {}, kTangent,
                       direction(draw(-half_pi, half_pi), draw(-3, 3)), draw(-1, 1));
     const auto last = [&] { return std::min(draw(0, 1), 0x1.fffffep-1f); };
-    const FiberSample s = f.sample({last(), last(), last(), last()});
+    const std::array<float, 4> u{last(), last(), last(), last()};
+    const FiberSample s = f.sample(u);
     const Vec3 w = direction(draw(-half_pi, half_pi), draw(-3, 3));
+    const Vec3 weight = f.scatter(u).weight;
+    ASSERT_TRUE(is_finite(weight) && std::min({weight.x, weight.y, weight.z}) >= 0) << i;
     ASSERT_TRUE(is_finite(s.direction) && is_finite(s.value) && std::isfinite(s.pdf)) << i;
     ASSERT_GE(s.pdf, 0) << i;
     ASSERT_NEAR(length(s.direction), 1, 1e-4f) << i;

@@ -3,6 +3,8 @@
 // Every struct here is made for one θ_o and has
 //   value(a)    f·cos θ_i of all lobes            density(a)  of sample(), per solid angle, all lobes together
 //   weigh(a)    both at once                      sample(u)   a direction
+//   draw(u)     a direction with the weight value/density of its lobe alone: the mean over u is that of value(a)/density(a),
+//               and most of a lobe need not be computed, because it is drawn exactly
 //   albedo()    integral of value over the sphere
 //   keep(lobe)  switches all other lobes off: 0 R, 1 TT, 2 TRT, 3 what remains
 #pragma once
@@ -33,10 +35,24 @@ struct FiberWeight {
   float density;
 };
 
+/// A direction drawn from one lobe, and what the lobe scatters there over how often both are drawn.
+struct DrawnDirection {
+  kernel::ScatterDirection to;
+  Vec3 weight;
+};
+
 namespace fiber_models {
 
 using namespace kernel;
 inline constexpr Vec3 kNone{0, 0, 0};
+
+/// The direction of azimuth phi whose θ is drawn from a lobe's cone.
+inline ScatterDirection in_cone(const ScatterCone& cone, Vec4 u, float phi, float lobe) {
+  return scatter_direction(scatter_sample_cone(cone, u.y, u.z), phi, lobe);
+}
+
+/// `energy` spread over how often it is drawn: 0 for what never is.
+inline Vec3 over_chance(Vec3 energy, float chance) { return chance > 0 ? energy / chance : kNone; }
 
 /// A pair of azimuthal lobes as sampling.h draws it: scatter_sample_pair() and scatter_pdf_pair() with what all directions share.
 struct PairDensity {
@@ -72,9 +88,23 @@ struct Marschner {
   /// scatter_sample_marschner(), which draws from every lobe, drawing from the chosen one alone.
   ScatterDirection sample(Vec4 u) const {
     const float lobe = scatter_chosen(choice, u.x);
-    if (lobe == 0) return draw(lobes.r, u, scatter_sample_reflection(lobes, u.w), lobe);
-    if (lobe == 1) return draw(lobes.tt, u, kPi + around_tt.sample(u.w), lobe);
-    return draw(lobes.trt, u, lobe == 2 ? around_trt.sample(u.w) : kTwoPi * u.w, lobe);
+    if (lobe == 0) return in_cone(lobes.r, u, scatter_sample_reflection(lobes, u.w), lobe);
+    if (lobe == 1) return in_cone(lobes.tt, u, kPi + around_tt.sample(u.w), lobe);
+    return in_cone(lobes.trt, u, lobe == 2 ? around_trt.sample(u.w) : kTwoPi * u.w, lobe);
+  }
+  /// Cones are drawn exactly: what is left of a lobe's weight is azimuthal.
+  DrawnDirection draw(Vec4 u) const {
+    const ScatterDirection d = sample(u);
+    const float cos_phi = m_cos(d.phi), sin_phi = scatter_sin_phi(cos_phi);
+    if (d.lobe == 0)
+      return {d, over_chance(v_splat(scatter_reflection(lobes, cos_phi)), choice.r * scatter_pdf_reflection(lobes, d.phi))};
+    if (d.lobe == 1)
+      return {d, over_chance(lobes.a_tt * scatter_pair_value(lobes.n_tt, -cos_phi, sin_phi, 0),
+                             choice.tt * around_tt.density(d.phi - kPi))};
+    if (d.lobe == 2)
+      return {d, over_chance(lobes.a_trt * scatter_pair_value(lobes.n_trt, cos_phi, sin_phi, 0),
+                             choice.trt * around_trt.density(d.phi))};
+    return {d, over_chance(lobes.a_rest, choice.rest)};
   }
   Vec3 albedo() const { return v_splat(lobes.a_r) + lobes.a_tt + lobes.a_trt + lobes.a_rest; }
   void keep(int lobe) {
@@ -83,14 +113,18 @@ struct Marschner {
     if (lobe != 2) lobes.a_trt = kNone;
     if (lobe != 3) lobes.a_rest = kNone;
   }
-  static ScatterDirection draw(const ScatterCone& cone, Vec4 u, float phi, float lobe) {
-    return scatter_direction(scatter_sample_cone(cone, u.y, u.z), phi, lobe);
-  }
-
   ScatterLobes lobes;
   ScatterChoice choice = scatter_choice_of(lobes);
   PairDensity around_tt{lobes.n_tt}, around_trt{lobes.n_trt};
 };
+
+/// draw() of models whose lobes are weighed together.
+template <class Model>
+DrawnDirection draw_weighed(const Model& model, Vec4 u) {
+  const ScatterDirection d = model.sample(u);
+  const FiberWeight w = model.weigh({d.sin_i, d.cos_i, d.phi});
+  return {d, over_chance(w.value, w.density)};
+}
 
 /// R, TT and a diffuse lobe that holds what remains.
 struct Zhu {
@@ -100,6 +134,7 @@ struct Zhu {
   float density(FiberAngles a) const { return scatter_pdf_zhu(lobes, choice, a.sin_i, a.cos_i, a.phi); }
   FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
   ScatterDirection sample(Vec4 u) const { return scatter_sample_zhu(lobes, choice, u); }
+  DrawnDirection draw(Vec4 u) const { return draw_weighed(*this, u); }
   Vec3 albedo() const { return v_splat(lobes.a_r) + lobes.a_tt + lobes.a_rest; }
   void keep(int lobe) {
     if (lobe != 0) lobes.a_r = 0;
@@ -126,6 +161,7 @@ struct KajiyaKay {
   float density(FiberAngles a) const { return scatter_pdf_kajiya_kay(lobes, choice, a.sin_i, a.cos_i); }
   FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
   ScatterDirection sample(Vec4 u) const { return scatter_sample_kajiya_kay(lobes, choice, u); }
+  DrawnDirection draw(Vec4 u) const { return draw_weighed(*this, u); }
   Vec3 albedo() const { return v_splat(lobes.a_r) + diffuse; }
   void keep(int lobe) {
     if (lobe != 0) lobes.a_r = 0;
@@ -156,10 +192,18 @@ struct Chiang {
   /// scatter_sample_chiang(), drawing from the chosen lobe alone.
   ScatterDirection sample(Vec4 u) const {
     const float lobe = scatter_chosen(choice, u.x);
-    if (lobe == 3) return Marschner::draw(near.rest, u, kTwoPi * u.w, lobe);
+    if (lobe == 3) return in_cone(near.rest, u, kTwoPi * u.w, lobe);
     const ScatterCone& cone = lobe == 0 ? near.r : lobe == 1 ? near.tt : near.trt;
     const float center = lobe == 0 ? near.phi_r : lobe == 1 ? near.phi_tt : near.phi_trt;
-    return Marschner::draw(cone, u, center + scatter_sample_logistic(u.w, near.rate), lobe);
+    return in_cone(cone, u, center + scatter_sample_logistic(u.w, near.rate), lobe);
+  }
+  /// Everything is drawn exactly: a lobe's weight is its energy.
+  DrawnDirection draw(Vec4 u) const {
+    const ScatterDirection d = sample(u);
+    if (d.lobe == 0) return {d, over_chance(v_splat(near.a_r), choice.r)};
+    if (d.lobe == 1) return {d, over_chance(near.a_tt, choice.tt)};
+    if (d.lobe == 2) return {d, over_chance(near.a_trt, choice.trt)};
+    return {d, over_chance(near.a_rest, choice.rest)};
   }
   Vec3 albedo() const { return v_splat(near.a_r) + near.a_tt + near.a_trt + near.a_rest; }
   void keep(int lobe) {
@@ -183,6 +227,7 @@ struct Sadeghi {
   float density(FiberAngles a) const { return scatter_pdf_sadeghi(lobes, choice, a.sin_i, a.cos_i, a.phi); }
   FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
   ScatterDirection sample(Vec4 u) const { return scatter_sample_sadeghi(lobes, choice, u); }
+  DrawnDirection draw(Vec4 u) const { return draw_weighed(*this, u); }
   Vec3 albedo() const { return lobes.a_r + lobes.a_tt + lobes.a_trt + lobes.a_glint; }
   void keep(int lobe) {
     if (lobe != 0) lobes.a_r = kNone;

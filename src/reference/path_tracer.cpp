@@ -84,6 +84,12 @@ struct PathTracer::State {
   bool seek_environment;  ///< by rays toward it
   std::optional<DualLight> dual;
 
+  struct ScatteredRay {
+    Vec3 direction;
+    Vec3 weight;            ///< what throughput becomes; 0: the path ends
+    float found_share = 0;  ///< of the environment's light that counts where the ray finds it
+  };
+
   State(const Scene& scene, const PathSettings& s);
 
   Vertex vertex(const SceneHit& hit, const Ray& ray) const;
@@ -91,7 +97,7 @@ struct PathTracer::State {
   bool visible(const Vertex& vertex, const LightRay& light) const;
   void gather(const Vertex& vertex, const LightRay& light, Vec3 throughput, int depth, Tally& tally) const;
   void gather_lights(const Vertex& vertex, std::array<float, 4> u, Vec3 throughput, int depth, Tally& tally) const;
-  float found_share(const FiberSample& scattered, int depth) const;
+  ScatteredRay scatter_ray(const Vertex& vertex, std::array<float, 4> u, int depth) const;
   void transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const;
   void gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random, Tally& tally) const;
   Vec3 color_of(std::uint32_t groom, const StrandPlace& place) const;
@@ -196,12 +202,17 @@ void PathTracer::State::gather_lights(const Vertex& vertex, std::array<float, 4>
   gather(vertex, lights.toward(choice.index, vertex.position), throughput / choice.chance, depth, tally);
 }
 
-/// Share of the environment's light that counts where a scattered ray finds it.
-float PathTracer::State::found_share(const FiberSample& scattered, int depth) const {
-  if (!seek_environment) return 1;
-  if (settings.technique == Technique::kNee) return 0;
+/// Where rays toward it look for the environment too, one that scatters must tell how often it is drawn by any lobe.
+PathTracer::State::ScatteredRay PathTracer::State::scatter_ray(const Vertex& vertex, std::array<float, 4> u, int depth) const {
+  if (!seek_environment) {
+    const ScatteredDirection s = scatter(vertex.bsdf, u);
+    return {s.direction, s.weight, 1};
+  }
+  const FiberSample s = pelage::sample(vertex.bsdf, u);
+  if (!(s.pdf > 0)) return {};
+  if (settings.technique == Technique::kNee) return {s.direction, s.value / s.pdf, 0};
   const float chance = depth == 0 ? 1.f : lights.environment_chance();
-  return power_heuristic(scattered.pdf, lights.environment().pdf(scattered.direction) * chance);
+  return {s.direction, s.value / s.pdf, power_heuristic(s.pdf, lights.environment().pdf(s.direction) * chance)};
 }
 
 /// All light that leaves the first vertex toward the eye.
@@ -216,18 +227,18 @@ void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& rand
     if (lit || roulette) v = random.next();
     else random.skip();
     if (lit) gather_lights(vertex, v, throughput, depth, tally);
-    const FiberSample scattered = pelage::sample(vertex.bsdf, u);
-    if (!(scattered.pdf > 0)) return;
-    throughput = throughput * scattered.value / scattered.pdf;
+    const ScatteredRay scattered = scatter_ray(vertex, u, depth);
+    throughput = throughput * scattered.weight;
+    if (!(largest(throughput) > 0)) return;
     if (tally.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
     if (roulette) {
       const float survival = std::min(std::sqrt(largest(throughput)), 1.f);
       if (!(v[3] < survival)) return;
       throughput = throughput / survival;
     }
-    const float share = environment.black() ? 0.f : found_share(scattered, depth);
+    const float share = environment.black() ? 0.f : scattered.found_share;
     const bool last = depth + 1 == max_bounces;
-    if (!(largest(throughput) > 0) || (last && !(share > 0))) return;
+    if (last && !(share > 0)) return;
     const Ray ray = vertex.ray(scattered.direction);
     SceneHit hit;
     bool open = false;

@@ -29,6 +29,11 @@ inline float pdf(const Bsdf& bsdf, Vec3 to_light) {
 inline FiberSample sample(const Bsdf& bsdf, std::array<float, 4> u) {
   return std::visit([&](const auto& b) { return b.sample(u); }, bsdf);
 }
+inline ScatteredDirection scatter(const Bsdf& bsdf, std::array<float, 4> u) {
+  if (const auto* fiber = std::get_if<FiberBsdf>(&bsdf)) return fiber->scatter(u);
+  const FiberSample s = std::get<SurfaceBsdf>(bsdf).sample(u);
+  return {s.direction, s.pdf > 0 ? s.value / s.pdf : Vec3()};
+}
 inline Vec3 albedo(const Bsdf& bsdf) {
   return std::visit([](const auto& b) { return b.albedo(); }, bsdf);
 }
