@@ -149,6 +149,7 @@ def main():
     cycles.use_denoising = False
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = int(bounces)
     cycles.transparent_max_bounces = int(bounces)
+    cycles.blur_glossy = cycles.sample_clamp_indirect = 0  # the same fiber and all light at every bounce
     scene.cycles_curves.shape = "RIBBONS"
 
     start = time.perf_counter()

@@ -55,6 +55,34 @@ RTCRay embree_ray(const Ray& ray) {
   return r;
 }
 
+/// The ten lowest bits of x, two zeros before each.
+std::uint32_t spread_bits(std::uint32_t x) {
+  x = (x | x << 16) & 0x030000ffu;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
+}
+
+/// Place of p, relative to a box, on a curve that fills space (Morton's): neighbors on it are neighbors in space.
+std::uint32_t place_on_curve(Vec3 p, const Bounds& box) {
+  const Vec3 extent = box.extent();
+  const float scale = 1023 / std::max({extent.x, extent.y, extent.z, 1e-30f});
+  const auto cell = [&](float v, float lowest) {
+    const float at = (v - lowest) * scale;
+    return spread_bits(at > 0 ? static_cast<std::uint32_t>(std::min(at, 1023.f)) : 0);
+  };
+  return cell(p.x, box.lower.x) | cell(p.y, box.lower.y) << 1 | cell(p.z, box.lower.z) << 2;
+}
+
+/// values[order[i]] for each i.
+template <class T>
+std::vector<T> arranged(const std::vector<T>& values, const std::vector<std::uint64_t>& order) {
+  std::vector<T> result;
+  result.reserve(values.size());
+  for (const std::uint64_t o : order) result.push_back(values[static_cast<std::uint32_t>(o)]);
+  return result;
+}
+
 bool count_memory(void* counter, const ssize_t bytes, bool) {
   static_cast<std::atomic<std::int64_t>*>(counter)->fetch_add(bytes, std::memory_order_relaxed);
   return true;
@@ -69,7 +97,7 @@ RayScene::Curves RayScene::make_curves(const GroomInstance& groom) {
   Curves c;
   c.basis = set.basis;
   c.points.reserve(set.point_count() + (phantoms ? 2 * set.strand_count() : 0) + 1);
-  c.spans.reserve(set.point_count());
+  c.spans.reserve(set.point_count()), c.first_points.reserve(set.point_count());
   for (std::size_t s = 0; s < set.strand_count(); ++s) {
     const std::uint32_t begin = set.offsets[s], end = set.offsets[s + 1], spans = span_count(set.basis, end - begin);
     const auto first = static_cast<std::uint32_t>(c.points.size());
@@ -84,21 +112,38 @@ RayScene::Curves RayScene::make_curves(const GroomInstance& groom) {
     }
     if (set.basis == CurveBasis::kBezier) straighten_radii(&c.points[first], spans);
     for (std::uint32_t k = 0; k < spans; ++k) {
-      c.spans.push_back({first + (set.basis == CurveBasis::kBezier ? 3 * k : k), static_cast<std::uint32_t>(s), k, spans});
+      c.spans.push_back({static_cast<std::uint32_t>(s), k, spans});
+      c.first_points.push_back(first + (set.basis == CurveBasis::kBezier ? 3 * k : k));
       if (set.basis == CurveBasis::kLinear)
         c.flags.push_back(static_cast<std::uint8_t>((k > 0 ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
                                                     (k + 1 < spans ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0)));
     }
   }
+  c.sort_by_place();
   return c;
+}
+
+void RayScene::Curves::sort_by_place() {
+  Bounds box;
+  for (const Vec4& p : points) box.extend(position(p));
+  std::vector<std::uint64_t> order;  // place on the curve, then the span that stands there
+  order.reserve(spans.size());
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    const Vec3 middle = (position(points[first_points[i]]) + position(points[first_points[i] + 1])) * 0.5f;
+    order.push_back(std::uint64_t{place_on_curve(middle, box)} << 32 | i);
+  }
+  std::sort(order.begin(), order.end());
+  spans = arranged(spans, order);
+  first_points = arranged(first_points, order);
+  if (!flags.empty()) flags = arranged(flags, order);
 }
 
 void RayScene::attach_curves(const Curves& c) {
   RTCGeometry geometry = rtcNewGeometry(device_, geometry_type(c.basis, shape_));
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, c.points.data(), 0, sizeof(Vec4),
                              c.points.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, c.spans.data(), offsetof(Span, first_point),
-                             sizeof(Span), c.spans.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, c.first_points.data(), 0,
+                             sizeof(std::uint32_t), c.first_points.size());
   if (!c.flags.empty())
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, c.flags.data(), 0, 1, c.flags.size());
   if (c.basis != CurveBasis::kLinear && shape_ == CurveShape::kFlat)
@@ -118,7 +163,8 @@ RayScene::RayScene(const Scene& scene, CurveShape shape) : shape_(shape), meshes
   std::atomic<std::int64_t> memory{0};
   rtcSetDeviceMemoryMonitorFunction(device_, count_memory, &memory);
   scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT |
+                                                      RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   for (const WorldMesh& mesh : meshes_) attach(device_, scene_, mesh);
   for (const Curves& curves : grooms_) attach_curves(curves);
   arena().execute([&] { rtcCommitScene(scene_); });
@@ -207,7 +253,7 @@ bool RayScene::cross_strands(const Ray& ray, const StrandVisitor& visitor) const
 StrandPlace RayScene::strand_place(const SceneHit& hit) const {
   const Curves& c = grooms_[hit.object];
   const Span& span = c.spans[hit.primitive];
-  const Vec4* p = &c.points[span.first_point];
+  const Vec4* p = &c.points[c.first_points[hit.primitive]];
   StrandPlace place;
   place.strand = span.strand, place.span = span.number;
   place.u = (static_cast<float>(span.number) + hit.u) / static_cast<float>(span.count);
@@ -241,7 +287,8 @@ std::size_t RayScene::span_total() const {
 
 std::size_t RayScene::bytes() const {
   std::size_t total = embree_bytes_ + resident_bytes(meshes_);
-  for (const Curves& c : grooms_) total += capacity_bytes(c.points) + capacity_bytes(c.spans) + capacity_bytes(c.flags);
+  for (const Curves& c : grooms_)
+    total += capacity_bytes(c.points) + capacity_bytes(c.spans) + capacity_bytes(c.first_points) + capacity_bytes(c.flags);
   return total;
 }
 

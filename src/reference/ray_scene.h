@@ -24,7 +24,7 @@ struct SceneHit {
   Kind kind = Kind::kNone;
   float distance = INFINITY;    ///< in units of the ray's direction
   std::uint32_t object = 0;     ///< index into Scene::grooms or Scene::meshes
-  std::uint32_t primitive = 0;  ///< span of the groom, or triangle
+  std::uint32_t primitive = 0;  ///< span of the groom, in RayScene's own order, or triangle
   float u = 0, v = 0;           ///< along the span, 0…1; or barycentric
 };
 
@@ -66,18 +66,21 @@ class RayScene {
   RTCScene embree() const { return scene_; }
 
  private:
-  /// What one look at a span needs to know of it.
+  /// What a hit wants to know of a span.
   struct Span {
-    std::uint32_t first_point;  ///< of its control points
     std::uint32_t strand;
     std::uint32_t number, count;  ///< in the strand: which, of how many
   };
-  /// Spans of one groom. Control points of a strand stand together, phantoms included.
+  /// Spans of one groom. Control points of a strand stand together, phantoms included. Spans stand as they lie in space: a ray
+  /// asks for those around it, wherever their strands are in the file.
   struct Curves {
     CurveBasis basis = CurveBasis::kLinear;
     std::vector<Vec4> points;  ///< world position and radius
     std::vector<Span> spans;
-    std::vector<std::uint8_t> flags;  ///< [spans] linear: which neighbors there are
+    std::vector<std::uint32_t> first_points;  ///< [spans] of their control points; apart, because rays ask for nothing else
+    std::vector<std::uint8_t> flags;          ///< [spans] linear: which neighbors there are
+
+    void sort_by_place();
   };
   static Curves make_curves(const GroomInstance& groom);
   void attach_curves(const Curves& curves);

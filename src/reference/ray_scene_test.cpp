@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "core/rng.h"
 #include "frame/segment_lookup.h"
@@ -39,18 +40,20 @@ TEST(RayScene, PlacesAreThoseOfTheSegmentLookUp) {
     const SegmentNumbering numbering{{0, 42}, {1}};
     const std::uint32_t spans = basis == CurveBasis::kBezier ? 2 : 6;
     ASSERT_EQ(rays.span_total(), 6 * spans);
-    for (std::uint32_t strand = 0; strand < 6; ++strand)
-      for (std::uint32_t span = 0; span < spans; ++span)
-        for (const float t : {0.f, 0.3f, 0.9f}) {
-          const StrandPlace place = rays.strand_place({SceneHit::Kind::kStrand, 1, 0, strand * spans + span, t, 0});
-          const StrandSurface expected = surface_at(scene, numbering, {0, strand, span, 0}, t);
-          EXPECT_EQ(place.strand, strand);
-          EXPECT_EQ(place.span, span);
-          EXPECT_LT(length(place.axis - expected.position), 2e-6f);
-          EXPECT_LT(length(place.tangent - expected.tangent), 2e-5f);
-          EXPECT_NEAR(place.u, expected.u, 1e-6f);
-          EXPECT_NEAR(2 * place.radius, expected.width, 1e-6f);
-        }
+    std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+    for (std::uint32_t primitive = 0; primitive < 6 * spans; ++primitive)
+      for (const float t : {0.f, 0.3f, 0.9f}) {
+        const StrandPlace place = rays.strand_place({SceneHit::Kind::kStrand, 1, 0, primitive, t, 0});
+        const StrandSurface expected = surface_at(scene, numbering, {0, place.strand, place.span, 0}, t);
+        seen.insert({place.strand, place.span});
+        EXPECT_LT(length(place.axis - expected.position), 2e-6f);
+        EXPECT_LT(length(place.tangent - expected.tangent), 2e-5f);
+        EXPECT_NEAR(place.u, expected.u, 1e-6f);
+        EXPECT_NEAR(2 * place.radius, expected.width, 1e-6f);
+      }
+    EXPECT_EQ(seen.size(), 6 * spans) << "every span of every strand is there";
+    EXPECT_LT(seen.rbegin()->first, 6u);
+    EXPECT_LT(seen.rbegin()->second, spans);
   }
 }
 
