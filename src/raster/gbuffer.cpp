@@ -9,6 +9,8 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "frame/sample_positions.h"
+#include "raster/analytic.h"
+#include "raster/coverage.h"
 
 namespace pelage {
 namespace {
@@ -39,6 +41,15 @@ void finish(Buffer<PixelKey>& keys) {
   });
 }
 
+// What is as good as full is full, in whatever order the strands came.
+void finish_coverage(GBuffer& out) {
+  constexpr auto kWhole = static_cast<std::uint32_t>(kMaxStrandDepth / GBuffer::kCoverageUnit);
+  parallel_for(out.coverage.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (out.coverage[i] >= kFullDepth) out.coverage[i] = kWhole;
+  });
+}
+
 }  // namespace
 
 void clear_gbuffer(const CameraView& view, const RasterLayers& layers, GBuffer& out) {
@@ -50,7 +61,7 @@ void clear_gbuffer(const CameraView& view, const RasterLayers& layers, GBuffer& 
   clear(out.center, layers.center, pixels, kEmptyPixel);
   clear(out.conservative, layers.conservative, pixels, kEmptyPixel);
   clear(out.sample_keys, layers.samples > 0, pixels * samples, kEmptyPixel);
-  clear(out.coverage, layers.analytic, pixels, std::uint32_t{0});
+  clear(out.coverage, layers.analytic || layers.coverage, pixels, std::uint32_t{0});
   clear(out.tangent_cos2, layers.analytic, pixels, std::int32_t{0});
   clear(out.tangent_sin2, layers.analytic, pixels, std::int32_t{0});
   clear(out.overdraw, layers.overdraw, pixels, std::uint32_t{0});
@@ -62,6 +73,7 @@ void clear_gbuffer(const CameraView& view, const RasterLayers& layers, GBuffer& 
 }
 
 void finish_gbuffer(const RasterLayers& layers, GBuffer& out) {
+  if (layers.coverage) finish_coverage(out);
   if (out.opaque_depth.empty()) return;
   if (layers.center) finish(out.center);
   if (layers.conservative) finish(out.conservative);

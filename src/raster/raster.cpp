@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "assemble/assemble.h"
 #include "core/check.h"
@@ -12,6 +13,7 @@
 #include "raster/analytic.h"
 #include "raster/band_area.h"
 #include "raster/band_walk.h"
+#include "raster/coverage.h"
 #include "raster/fragments.h"
 #include "raster/gbuffer.h"
 #include "raster/keys.h"
@@ -28,6 +30,13 @@ struct Worker {
   ScreenBlock block;
   FragmentBuffer fragments;
   StrandAreas areas;
+  CoverageScratch coverage;
+};
+
+/// What all threads share.
+struct Shared {
+  TileLocks locks;
+  std::optional<FullTiles> full;
 };
 
 void count_overdraw(const ScreenBlock& block, GBuffer& out) {
@@ -52,13 +61,14 @@ void raster_conservative(const ScreenBlock& block, GBuffer& out) {
   }
 }
 
-void raster_block(Worker& worker, const RasterLayers& layers, TileLocks& locks, GBuffer& out) {
+void raster_block(Worker& worker, const RasterLayers& layers, Shared& shared, GBuffer& out) {
   const ScreenBlock& block = worker.block;
   if (layers.center) raster_center(block, out.width, out.height, worker.fragments, out.center.data());
   if (layers.samples > 0)
-    raster_samples(block, out.width, out.height, layers.samples, worker.fragments, locks, out.sample_keys.data());
+    raster_samples(block, out.width, out.height, layers.samples, worker.fragments, shared.locks, out.sample_keys.data());
   if (layers.conservative) raster_conservative(block, out);
   if (layers.analytic) raster_analytic(block, worker.areas, out);
+  if (layers.coverage) raster_coverage(block, worker.coverage, *shared.full, out);
   if (layers.overdraw) count_overdraw(block, out);
 }
 
@@ -67,7 +77,8 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
                              const RasterLayers& layers, GBuffer& out, SharedProgress& progress) {
   std::atomic<std::uint64_t> segments{0};
   tbb::enumerable_thread_specific<Worker> workers;
-  TileLocks locks(out.width, out.height);
+  Shared shared{TileLocks(out.width, out.height), {}};
+  if (layers.coverage) shared.full.emplace(out.width, out.height);
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
     const AssembleJob job = make_assemble_job(scene, view, numbering, g);
     parallel_for(job.strands->strand_count(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
@@ -75,7 +86,7 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
       std::uint64_t points = 0;
       for (std::size_t s = begin; s < end;) {
         s = assemble_strands(job, s, end, worker.block);
-        raster_block(worker, layers, locks, out);
+        raster_block(worker, layers, shared, out);
         points += worker.block.count;
       }
       segments.fetch_add(points, std::memory_order_relaxed);

@@ -18,6 +18,7 @@ struct RasterLayers {
   bool conservative = false;  ///< band touches the pixel anywhere
   int samples = 0;            ///< 0 for none; else 1, 2, 4, 8 or 16 positions (frame/sample_positions.h)
   bool analytic = false;      ///< area and tangent: raster/analytic.h
+  bool coverage = false;      ///< area alone, of thin strands, and fast: raster/coverage.h; not together with `analytic`
   bool overdraw = false;      ///< count the fragments at the pixel's center, hidden ones too
 };
 

@@ -16,14 +16,19 @@ PELAGE_FN Float raster_area_below(Float y0, Float y1) {
   return select(level, inside_lo, whole / select(level, one, rise));
 }
 
-// Area of the band inside the pixel at (column center u, row center v) where neither caps nor ends cut it; `center` and
-// `half` at u as of raster_band_center(), raster_band_half().
-PELAGE_FN Float raster_band_area(RasterBand r, Float v, Float center, Float half) {
+// Area of the band inside row v of a part of a column, `share` (0…1) of its width, where neither caps nor ends cut it;
+// `center` and `half` in the middle of the part as of raster_band_center(), raster_band_half().
+PELAGE_FN Float raster_band_area_part(RasterBand r, Float v, Float center, Float half, Float share) {
   Float middle = center - v + Float(0.5f);
-  Float rise_low = (r.slope - r.half_slope) * Float(0.5f);
-  Float rise_high = (r.slope + r.half_slope) * Float(0.5f);
+  Float rise_low = (r.slope - r.half_slope) * share * Float(0.5f);
+  Float rise_high = (r.slope + r.half_slope) * share * Float(0.5f);
   Float low = middle - half;
   Float high = middle + half;
-  return max(raster_area_below(high - rise_high, high + rise_high) - raster_area_below(low - rise_low, low + rise_low),
-             Float(0.0f));
+  return share * max(raster_area_below(high - rise_high, high + rise_high) - raster_area_below(low - rise_low, low + rise_low),
+                     Float(0.0f));
+}
+
+// The same for a whole column, whose center is u.
+PELAGE_FN Float raster_band_area(RasterBand r, Float v, Float center, Float half) {
+  return raster_band_area_part(r, v, center, half, Float(1.0f));
 }
