@@ -123,9 +123,10 @@ void render_verb(const RenderOptions& options) {
 
 void add_picture_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--method", o.method,
-                  "Anti-aliasing: msaa (samples of one frame share shading), ssaa (each is shaded), taa, fxaa, smaa or oidn")
+                  "Anti-aliasing: msaa (samples of one frame share shading), ssaa (each is shaded), taa, fxaa, smaa, "
+                  "link (one sample, then strands are linked and smoothed), link-taa or oidn")
       ->type_name("NAME");
-  verb.add_option("--spp", o.samples, "Samples per pixel; msaa: 1, 2, 4, 8 or 16; ssaa: any number")
+  verb.add_option("--spp", o.samples, "Samples per pixel; msaa: 1, 2, 4, 8 or 16; link: 1, 4, 9 or 16; ssaa: any number")
       ->check(CLI::Range(1, 4096));
   verb.add_option("--frames", o.frames,
                   "Pictures of a sequence (an output like out.####.exr, or --orbit); else frames that taa blends")
@@ -134,7 +135,10 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->check(CLI::Range(-360.0, 360.0));
   verb.add_option("--view", o.view, "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo or motion")
       ->type_name("NAME");
-  verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic")->type_name("NAME");
+  verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic; of link: count, coverage")
+      ->type_name("NAME");
+  verb.add_option("--kernel-size", o.kernel_size, "link: half of the filter's length over the size of the hair; 0.01")
+      ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')
       ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw", "motion"}));
@@ -170,6 +174,7 @@ void add_render(CLI::App& app) {
       "  pelage render hair.tfx -o hair.exr --size 1920x1080 --spp 16 --hair blond --stats\n"
       "  pelage render hair.tfx -o reference.exr --method ssaa --spp 64\n"
       "  pelage render hair.tfx -o turn.####.exr --method taa --orbit 0.5 --frames 48 --layers motion\n"
+      "  pelage render hair.tfx -o linked.png --method link --alpha coverage\n"
       "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage");
   verb->callback([o] {
     if (o->schema) return fmt::print("{}", io::scene_schema());

@@ -124,14 +124,23 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
                                 {"taa", Method::kTaa},
                                 {"fxaa", Method::kFxaa},
                                 {"smaa", Method::kSmaa},
+                                {"link", Method::kLink},
+                                {"link-taa", Method::kLinkTaa},
                                 {"oidn", Method::kOidn}});
+  if (o.method && is_linking(s.method)) s.samples = 1;
   if (o.frames && !makes_sequence(o)) s.frames = *o.frames;
   if (o.samples) s.samples = *o.samples;
   if (s.method == Method::kMsaa && !is_sample_count(s.samples))
     throw UsageError("--spp", std::to_string(s.samples), "no pattern of msaa", "use 1, 2, 4, 8 or 16, or --method ssaa");
-  if (o.alpha)
+  if (is_linking(s.method) && !is_link_sample_count(s.samples))
+    throw UsageError("--spp", std::to_string(s.samples), "no square of visibility pixels",
+                     "use 1, 4, 9 or 16 with --method link");
+  if (o.alpha && is_linking(s.method))
+    s.link.alpha = by_name<LinkAlpha>("--alpha", *o.alpha, {{"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}});
+  else if (o.alpha)
     s.alpha =
         by_name<AlphaSource>("--alpha", *o.alpha, {{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}});
+  if (o.kernel_size) s.link.kernel_size = *o.kernel_size;
   if (o.view)
     s.view = by_name<View>("--view", *o.view,
                            {{"beauty", View::kBeauty},

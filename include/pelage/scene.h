@@ -110,20 +110,45 @@ enum class ToneMap { kAces, kNone };
 
 /// How a picture is anti-aliased.
 enum class Method {
-  kMsaa,  ///< `samples` places a pixel, all in one frame; those that see the same segment share one shade
-  kSsaa,  ///< `samples` frames of one sample each, every one shaded where it is; the reference
-  kTaa,   ///< frames of one sample each in turn, every one blended into those before; see `frames`
-  kFxaa,  ///< one sample in the middle of the pixel, then FXAA 3.11
-  kSmaa,  ///< one sample in the middle of the pixel, then SMAA 1x
-  kOidn,  ///< one sample in the middle of the pixel, then Open Image Denoise, in builds that have it
+  kMsaa,     ///< `samples` places a pixel, all in one frame; those that see the same segment share one shade
+  kSsaa,     ///< `samples` frames of one sample each, every one shaded where it is; the reference
+  kTaa,      ///< frames of one sample each in turn, every one blended into those before; see `frames`
+  kFxaa,     ///< one sample in the middle of the pixel, then FXAA 3.11
+  kSmaa,     ///< one sample in the middle of the pixel, then SMAA 1x
+  kLink,     ///< one sample a pixel, then strand linking and its filter (Huang 2025); see `link`
+  kLinkTaa,  ///< kTaa of frames that are made by kLink
+  kOidn,     ///< one sample in the middle of the pixel, then Open Image Denoise, in builds that have it
+};
+
+/// Where the opacity of hair that strand linking has found comes from.
+enum class LinkAlpha {
+  kCount,     ///< hit over hit and filled pixels of each segment; Huang 2025, eq. 8
+  kCoverage,  ///< exact area of the strands, by another layer of raster: better, and about as long again as raster
+};
+
+/// Strand linking and its filter, of Method::kLink: the symbols of Huang 2025 (docs/methods.md).
+struct LinkSettings {
+  bool link = true;           ///< false: only the filter
+  float alignment = 0.5f;     ///< ε_align of eq. 5, 0…1: how well a strand has to fit an empty pixel
+  float sigma = 1.41421356f;  ///< σ of eq. 4, pixels; below 1.2 no diagonal neighbor ever reaches an alignment of 0.5
+  float depth_sigma = 0;      ///< pixels of depth; > 0: of strands that fit, those farther behind count less. 0: as published
+  LinkAlpha alpha = LinkAlpha::kCount;
+  bool filter = true;               ///< false: only links and alpha fix
+  float kernel_size = 0.01f;        ///< k of eq. 13: half of the kernel's major axis over the size of the hair on the screen
+  float aspect = 0.3f;              ///< ρ, its minor over its major axis, 0…1
+  float sigma_distance = INFINITY;  ///< σ_d of eq. 11, in units of r; INFINITY: all distances within the kernel count alike
+  float sigma_angle = INFINITY;     ///< σ_θ of eq. 11, radians
+  float sigma_color = INFINITY;     ///< σ_c of eq. 11, linear radiance
 };
 
 struct RenderSettings {
   int width = 1024, height = 1024;  ///< pixels, 1…16384
   Method method = Method::kMsaa;
-  int samples = 8;  ///< per pixel; kMsaa: 1, 2, 4, 8 or 16; kSsaa: 1…4096; no other method reads it
-  int frames = 16;  ///< kTaa: frames that a still camera takes for one picture, 1…4096
+  int samples =
+      8;  ///< per pixel; kMsaa: 1, 2, 4, 8 or 16; kSsaa: 1…4096; kLink, kLinkTaa: 1, 4, 9 or 16; no other method reads it
+  int frames = 16;  ///< kTaa and kLinkTaa: frames that a still camera takes for one picture, 1…4096
   AlphaSource alpha = AlphaSource::kSamples;
+  LinkSettings link;
   View view = View::kBeauty;
   float exposure = 0;  ///< stops
   ToneMap tone_map = ToneMap::kAces;

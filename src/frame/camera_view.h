@@ -31,4 +31,11 @@ inline Vec2 project(const CameraView& view, Vec3 c) {
   return {view.center_x + scale * c.x, view.center_y + scale * c.y};
 }
 
+/// Where something at `c` that moves along `v`, both in camera space, moves on the screen: pixels per length of v.
+inline Vec2 project_direction(const CameraView& view, Vec3 c, Vec3 v) {
+  const float scale = pixels_per_metre(view, c.z);
+  if (!view.perspective) return {scale * v.x, scale * v.y};
+  return {scale * (v.x - c.x * v.z / c.z), scale * (v.y - c.y * v.z / c.z)};
+}
+
 }  // namespace pelage

@@ -7,14 +7,17 @@
 #include <span>
 #include <utility>
 
+#include "assemble/assemble.h"
 #include "composite/composite.h"
 #include "composite/debug_view.h"
 #include "filter/frame_mean.h"
 #include "filter/fxaa.h"
 #include "filter/oidn.h"
 #include "filter/smaa.h"
+#include "filter/strand_curves.h"
 #include "filter/taa.h"
 #include "frame/camera_view.h"
+#include "frame/linked_frame.h"
 #include "frame/sample_positions.h"
 
 namespace pelage {
@@ -64,21 +67,6 @@ Image supersampled(const FrameInputs& inputs, Stages& stages) {
   return mean.take();
 }
 
-/// One frame more for what the history has, or as many as a first picture takes.
-Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages) {
-  const int frames = state.history ? 1 : inputs.scene.settings.frames;
-  if (!state.history) state.history = std::make_unique<TaaHistory>();
-  for (int i = 0; i < frames; ++i) {
-    stages.set_pass(i, frames);
-    const Vec2 position = jitter_position(state.next_frame++);
-    TaaFrame frame{{}, {}, inputs.view, position};
-    frame.color = render_frame(jittered(inputs, position), kPixelCenter, stages, &frame.depth);
-    run_on(frame.color, "filter.taa", stages, [&] { state.history->add(std::move(frame)); });
-  }
-  stages.set_pass(0, 1);
-  return state.history->picture();
-}
-
 /// Edges are found in what a display shows, and smoothed there and in the linear picture.
 Beauty fast_approximate(const FrameInputs& inputs, Stages& stages) {
   Beauty b = displayed(render_frame(inputs, kPixelCenter, stages), inputs.scene.settings.tone_map, stages);
@@ -122,6 +110,51 @@ Image denoised(const FrameInputs& inputs, Stages& stages) {
   return linear;
 }
 
+/// The same picture of `side`² visibility pixels a pixel.
+FrameInputs with_finer_pixels(const FrameInputs& inputs, int side) {
+  const auto s = static_cast<float>(side);
+  CameraView view = inputs.view;
+  view.focal *= s, view.center_x *= s, view.center_y *= s;
+  view.width *= side, view.height *= side;
+  return {inputs.scene, inputs.meshes, inputs.rig, view, number_segments(inputs.scene, view)};
+}
+
+/// Strand linking, alpha fix and orientation-aware filter over one frame.
+Image linked(const FrameInputs& inputs, Stages& stages, Buffer<float>* nearest = nullptr) {
+  const RenderSettings& settings = inputs.scene.settings;
+  const int side = static_cast<int>(std::lround(std::sqrt(static_cast<float>(settings.samples))));
+  const FrameInputs fine = with_finer_pixels(inputs, side);
+  StrandLayer layer = render_strand_layer(fine, side, settings.link.alpha == LinkAlpha::kCoverage, stages);
+  return link_and_filter(std::move(layer), GroomCurves(fine.scene, fine.view), settings, stages, nearest);
+}
+
+/// One frame more for what the history has, or as many as a first picture takes.
+/// make_frame(inputs, depth) is a frame of one sample a pixel, and the depth of what each shows.
+template <class Frame>
+Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages, const Frame& make_frame) {
+  const int frames = state.history ? 1 : inputs.scene.settings.frames;
+  if (!state.history) state.history = std::make_unique<TaaHistory>();
+  for (int i = 0; i < frames; ++i) {
+    stages.set_pass(i, frames);
+    const Vec2 position = jitter_position(state.next_frame++);
+    TaaFrame frame{{}, {}, inputs.view, position};
+    frame.color = make_frame(jittered(inputs, position), frame.depth);
+    run_on(frame.color, "filter.taa", stages, [&] { state.history->add(std::move(frame)); });
+  }
+  stages.set_pass(0, 1);
+  return state.history->picture();
+}
+
+/// TAA of frames of one sample, or of what strand linking makes of each.
+Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages) {
+  if (inputs.scene.settings.method == Method::kLinkTaa)
+    return temporal(inputs, state, stages,
+                    [&](const FrameInputs& frame, Buffer<float>& depth) { return linked(frame, stages, &depth); });
+  return temporal(inputs, state, stages, [&](const FrameInputs& frame, Buffer<float>& depth) {
+    return render_frame(frame, kPixelCenter, stages, &depth);
+  });
+}
+
 }  // namespace
 
 MethodState::MethodState() = default;
@@ -134,9 +167,11 @@ Beauty render_beauty(const FrameInputs& inputs, MethodState& state, Stages& stag
   switch (inputs.scene.settings.method) {
     case Method::kMsaa: break;
     case Method::kSsaa: return displayed(supersampled(inputs, stages), tone_map, stages);
-    case Method::kTaa: return displayed(temporal(inputs, state, stages), tone_map, stages);
+    case Method::kTaa:
+    case Method::kLinkTaa: return displayed(temporal(inputs, state, stages), tone_map, stages);
     case Method::kFxaa: return fast_approximate(inputs, stages);
     case Method::kSmaa: return morphological(inputs, stages);
+    case Method::kLink: return displayed(linked(inputs, stages), tone_map, stages);
     case Method::kOidn: return displayed(denoised(inputs, stages), tone_map, stages);
   }
   return displayed(multisampled(inputs, stages), tone_map, stages);

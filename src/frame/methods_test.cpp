@@ -221,5 +221,78 @@ TEST_P(EveryMethod, HasTheSameBitsForAnyThreadsAndInstructionSet) {
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                          testing::Values(Method::kMsaa, Method::kSsaa, Method::kTaa, Method::kFxaa, Method::kSmaa));
 
+/// Rms difference of the linear pictures to 256 frames of one sample, over the pixels that hair touches there.
+double error_of(const Scene& scene, const Image& reference, Method method, int samples = 1,
+                LinkAlpha alpha = LinkAlpha::kCount) {
+  Scene s = scene;
+  s.settings.link.alpha = alpha;
+  return rms(linear_of(s, method, samples), reference);
+}
+
+TEST(Link, IsNearerToTheReferenceThanItsInput) {
+  Scene scene = hairy_scene(160, 120);
+  scene.grooms[0].strands = std::make_shared<StrandSet>(test::helices(2000, 24, 0.001f));
+  scene.settings.link.kernel_size = 0.03f;
+  const Image reference = linear_of(scene, Method::kSsaa, 256);
+  const double input = error_of(scene, reference, Method::kMsaa), linked = error_of(scene, reference, Method::kLink),
+               exact = error_of(scene, reference, Method::kLink, 1, LinkAlpha::kCoverage);
+  EXPECT_LT(linked, 0.5 * input);
+  EXPECT_LT(exact, 0.4 * input);
+  EXPECT_LT(error_of(scene, reference, Method::kLink, 16), 0.8 * linked);
+}
+
+// Neither links nor filter: a picture of one sample a pixel, or the mean of those of finer pixels.
+TEST(Link, WithoutLinksAndFilterItIsTheInput) {
+  Scene scene = hairy_scene();
+  add_tile(scene);
+  scene.settings.link.link = scene.settings.link.filter = false;
+  const Image one = linear_of(scene, Method::kLink, 1), input = linear_of(scene, Method::kMsaa, 1);
+  for (std::size_t i = 0; i < one.pixels.size(); ++i) EXPECT_NEAR(one.pixels[i], input.pixels[i], 1e-6f);
+  scene.settings.subdivisions = 4;
+  const Image four = linear_of(scene, Method::kLink, 4);
+  scene.settings.width *= 2, scene.settings.height *= 2;
+  const Image fine = linear_of(scene, Method::kMsaa, 1);
+  for (int y = 0; y < four.height; ++y)
+    for (int x = 0; x < four.width; ++x)
+      for (int c = 0; c < 4; ++c) {
+        const float mean = (fine.at(2 * x, 2 * y)[c] + fine.at(2 * x + 1, 2 * y)[c] + fine.at(2 * x, 2 * y + 1)[c] +
+                            fine.at(2 * x + 1, 2 * y + 1)[c]) /
+                           4;
+        EXPECT_NEAR(four.at(x, y)[c], mean, 1e-5f) << x << " " << y << " " << c;
+      }
+}
+
+TEST(Link, SameBitsForAnyThreads) {
+  Scene scene = hairy_scene();
+  add_tile(scene);
+  for (const LinkAlpha alpha : {LinkAlpha::kCount, LinkAlpha::kCoverage}) {
+    scene.settings.link.alpha = alpha;
+    set_thread_count(1);
+    const Image one = linear_of(scene, Method::kLink, 1);
+    for (const int threads : {2, 5}) {
+      set_thread_count(threads);
+      EXPECT_EQ(linear_of(scene, Method::kLink, 1).pixels, one.pixels) << threads;
+    }
+    set_thread_count(0);
+  }
+}
+
+TEST(Link, TakesScenesWithoutHairAndTellsOfWrongSamples) {
+  Scene scene = hairy_scene();
+  scene.grooms[0].strands = std::make_shared<StrandSet>(test::helices(1, 2));
+  scene.camera.target = {0, 5, 0};  // away from it
+  scene.camera.eye = {0, 4, 0.1f};
+  const Image empty = linear_of(scene, Method::kLink, 1);
+  for (const float v : empty.pixels) EXPECT_TRUE(std::isfinite(v));
+  for (const int samples : {2, 8, 25}) EXPECT_THROW(linear_of(scene, Method::kLink, samples), Error);
+}
+
+TEST(LinkTaa, GoesOnFromFrameToFrame) {
+  Scene scene = hairy_scene(160, 120);
+  const Image reference = linear_of(scene, Method::kSsaa, 256);
+  scene.settings.frames = 8;
+  EXPECT_LT(error_of(scene, reference, Method::kLinkTaa), 0.8 * error_of(scene, reference, Method::kLink));
+}
+
 }  // namespace
 }  // namespace pelage

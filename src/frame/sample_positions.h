@@ -1,6 +1,7 @@
 // Where the samples of a pixel are: the same places for the rasterizer, for jittered frames and for the path tracer.
 #pragma once
 
+#include <pelage/scene.h>
 #include <pelage/vec.h>
 
 #include <array>
@@ -65,5 +66,9 @@ inline std::vector<Vec2> pixel_sample_positions(int count) {
 /// Position `frame` (0, 1, …) of an endless sequence of frames that take one sample each: Halton's, bases 2 and 3, without
 /// its point 0. Any run of it is spread evenly. references.bib: Karis2014Temporal.
 inline Vec2 jitter_position(std::uint32_t frame) { return {radical_inverse(frame + 1, 2), radical_inverse(frame + 1, 3)}; }
+
+/// Whether a method works by strand linking, and how many samples a pixel it can take: squares of visibility pixels.
+inline bool is_linking(Method method) { return method == Method::kLink || method == Method::kLinkTaa; }
+inline bool is_link_sample_count(int samples) { return samples == 1 || samples == 4 || samples == 9 || samples == 16; }
 
 }  // namespace pelage

@@ -231,22 +231,52 @@ const Fields<GroomText>& groom_fields() {
   return table;
 }
 
+const Fields<LinkSettings>& link_fields() {
+  using L = LinkSettings;
+  static const Names<LinkAlpha> alphas{{"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}};
+  static const Fields<L> table{
+      boolean_field("link", "Whether missed pixels of strands are filled", &L::link),
+      number_field("alignment", "How well a strand has to fit an empty pixel", &L::alignment, 0, 1),
+      number_field("sigma", "Pixels within which strands are looked for", &L::sigma, 0.1, 10),
+      number_field("depth_sigma", "Pixels of depth by which strands behind count less; 0: not at all", &L::depth_sigma, 0, 1e6),
+      choice_field("alpha", "Opacity of linked strands: hit over all pixels, or exact area", &L::alpha, alphas),
+      boolean_field("filter", "Whether hair is smoothed along its strands", &L::filter),
+      number_field("kernel_size", "Half of the kernel's major axis, over the size of the hair", &L::kernel_size, 0, 1),
+      number_field("aspect", "Minor over major axis of the kernel", &L::aspect, 0, 1),
+      number_field("sigma_distance", "In units of half the major axis; endless without it", &L::sigma_distance, 1e-3, 1e6),
+      number_field("sigma_angle", "Radians; endless without it", &L::sigma_angle, 1e-3, 1e6),
+      number_field("sigma_color", "Linear radiance; endless without it", &L::sigma_color, 1e-6, 1e6),
+  };
+  return table;
+}
+
+/// The choice of a method: linking takes one sample a pixel where nothing else is said.
+Field<RenderSettings> method_field() {
+  static const Names<Method> methods{{"msaa", Method::kMsaa},        {"ssaa", Method::kSsaa}, {"taa", Method::kTaa},
+                                     {"fxaa", Method::kFxaa},        {"smaa", Method::kSmaa}, {"link", Method::kLink},
+                                     {"link-taa", Method::kLinkTaa}, {"oidn", Method::kOidn}};
+  Field<RenderSettings> field = choice_field("method", "How the picture is anti-aliased", &RenderSettings::method, methods);
+  field.read = [read = field.read](const JsonValue& v, RenderSettings& out) {
+    read(v, out);
+    if (is_linking(out.method)) out.samples = 1;
+  };
+  return field;
+}
+
 const Fields<RenderSettings>& settings_fields() {
   using S = RenderSettings;
   static const Names<AlphaSource> alphas{{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}};
   static const Names<View> views{{"beauty", View::kBeauty},     {"strand-id", View::kStrandId}, {"u", View::kU},
                                  {"tangent", View::kTangent},   {"depth", View::kDepth},        {"coverage", View::kCoverage},
                                  {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo},      {"motion", View::kMotion}};
-  static const Names<Method> methods{{"msaa", Method::kMsaa}, {"ssaa", Method::kSsaa}, {"taa", Method::kTaa},
-                                     {"fxaa", Method::kFxaa}, {"smaa", Method::kSmaa}, {"oidn", Method::kOidn}};
   static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};
   static const Fields<S> table{
       integer_field("width", "Pixels", &S::width, 1, 16384),
       integer_field("height", "Pixels", &S::height, 1, 16384),
       // Before the samples, whose range it decides.
-      choice_field("method", "How the picture is anti-aliased", &S::method, methods),
+      method_field(),
       {"samples",
-       {{"description", "Per pixel: 1, 2, 4, 8 or 16 for msaa, any number for ssaa"},
+       {{"description", "Per pixel: 1, 2, 4, 8 or 16 for msaa, 1, 4, 9 or 16 for link, any number for ssaa"},
         {"type", "integer"},
         {"minimum", 1},
         {"maximum", 4096}},
@@ -254,10 +284,13 @@ const Fields<RenderSettings>& settings_fields() {
          const long long n = v.integer(1, 4096);
          if (out.method == Method::kMsaa && !is_sample_count(static_cast<int>(n)))
            v.fail(std::to_string(n) + " samples per pixel", "1, 2, 4, 8 or 16; others with method ssaa");
+         if (is_linking(out.method) && !is_link_sample_count(static_cast<int>(n)))
+           v.fail(std::to_string(n) + " samples per pixel", "1, 4, 9 or 16 with method link");
          out.samples = static_cast<int>(n);
        }},
       integer_field("frames", "Frames that taa takes of a still camera for one picture", &S::frames, 1, 4096),
       choice_field("alpha", "Opacity: share of covered samples, or exact area", &S::alpha, alphas),
+      object_field("link", "Strand linking, of the methods link and link-taa", &S::link, link_fields()),
       choice_field("view", "What the picture shows", &S::view, views),
       number_field("exposure", "Stops", &S::exposure, -100, 100),
       choice_field("tone_map", "Curve of the display picture", &S::tone_map, tone_maps),

@@ -22,6 +22,19 @@ PELAGE_FN RasterBand parity_band(Float a, Float b, Float c, Float d, Float e, Fl
 }
 PELAGE_FN Vec4 parity_band_shape(RasterBand r) { return Vec4(raster_band_center(r, Float(1.0f)), r.slope, r.first, r.last); }
 
+// A kernel all of whose terms are at work.
+PELAGE_FN FilterKernel parity_filter_kernel(Float inverse) {
+  FilterKernel k;
+  k.inverse_major2 = inverse;
+  k.inverse_minor2 = inverse * Float(3.0f);
+  k.inverse_distance2 = inverse * Float(0.5f);
+  k.inverse_angle2 = inverse;
+  k.inverse_color2 = inverse * Float(2.0f);
+  k.half_inverse_along2 = inverse * Float(0.25f);
+  k.half_inverse_across2 = inverse * Float(0.75f);
+  return k;
+}
+
 PELAGE_FN Vec4 parity_harmonics_low(Vec3 n) {
   LightHarmonics h = light_harmonics(n);
   return Vec4(h.c00, h.c1n, h.c10, h.c1p);

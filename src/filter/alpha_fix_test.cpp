@@ -1,0 +1,191 @@
+// Alpha fix: counts, energy, and the table that is full.
+#include "filter/alpha_fix.h"
+
+#include <gtest/gtest.h>
+#include <pelage/runtime.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "core/rng.h"
+#include "filter/segment_counts.h"
+
+namespace pelage {
+namespace {
+
+/// Random samples, and random empty pixels filled from random samples: what linking could have left.
+struct Linked {
+  StrandLayer layer;
+  Links links;
+};
+
+Linked random_links(std::uint32_t seed, int width, int height, int side = 1, std::uint32_t segments = 12) {
+  Linked l;
+  Rng rng(5, seed);
+  l.layer.width = width, l.layer.height = height, l.layer.side = side;
+  const std::size_t n = static_cast<std::size_t>(width * height);
+  l.layer.visibility.resize(n), l.layer.strand.resize(n), l.layer.depth.resize(n), l.layer.color.resize(n),
+      l.layer.behind.resize(n);
+  std::vector<std::uint32_t> hits, empty;
+  for (std::size_t p = 0; p < n; ++p) {
+    const bool hair = rng.uniform() < 0.4f;
+    const auto segment = static_cast<std::uint32_t>(rng.uniform() * static_cast<float>(segments));
+    const float angle = 3 * rng.uniform();
+    l.layer.visibility[p] =
+        hair ? pack_visibility({std::cos(angle), std::sin(angle)}, 0.5f, segment, false) : VisibilitySample();
+    l.layer.strand[p] = 0, l.layer.depth[p] = hair ? 1.f : INFINITY;
+    l.layer.color[p] = hair ? Vec3(rng.uniform(), 3 * rng.uniform(), 0.1f) : Vec3();
+    l.layer.behind[p] = {0.5f, 0.25f, 0.125f, 1};
+    (hair ? hits : empty).push_back(static_cast<std::uint32_t>(p));
+  }
+  for (const std::uint32_t p : empty) {
+    if (hits.empty() || rng.uniform() < 0.5f) continue;
+    const std::uint32_t source = hits[static_cast<std::size_t>(rng.uniform() * static_cast<float>(hits.size()))];
+    l.layer.visibility[p] = pack_visibility({1, 0}, 0.5f, 1000 + source, true);  // linked on another span than the source's
+    l.layer.color[p] = l.layer.color[source], l.layer.depth[p] = 1;
+    l.links.fills.push_back({p, source});
+  }
+  return l;
+}
+
+double sum(const Buffer<float>& plane) {
+  double s = 0;
+  for (const float v : plane) s += static_cast<double>(v);
+  return s;
+}
+
+// Eq. 8 by maps and loops over pixels.
+TEST(AlphaFix, IsHitOverAllOfASegment) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    Linked l = random_links(seed, 31, 17);
+    std::map<std::uint32_t, int> hit, filled;
+    std::map<std::uint32_t, Vec3> color;
+    for (std::size_t p = 0; p < l.layer.visibility.size(); ++p)
+      if (const VisibilitySample& v = l.layer.visibility[p]; v.is_hair() && !v.is_filled())
+        ++hit[v.primitive()], color[v.primitive()] += l.layer.color[p];
+    std::map<std::uint32_t, std::uint32_t> segment_of_fill;
+    for (const Fill& f : l.links.fills) {
+      segment_of_fill[f.pixel] = l.layer.visibility[f.source].primitive();
+      ++filled[segment_of_fill[f.pixel]];
+    }
+    AlphaStats stats;
+    const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, stats);
+    EXPECT_EQ(stats.overflow, 0u);
+    EXPECT_EQ(stats.segments, filled.size());
+    for (std::uint32_t p = 0; p < l.layer.visibility.size(); ++p) {
+      const VisibilitySample& v = l.layer.visibility[p];
+      if (!v.is_hair()) {
+        EXPECT_EQ(matte.alpha[p], 0.f);
+        continue;
+      }
+      const std::uint32_t segment = v.is_filled() ? segment_of_fill[p] : v.primitive();
+      const bool linked = filled.count(segment);
+      const float m = static_cast<float>(hit[segment]), n = linked ? static_cast<float>(filled[segment]) : 0;
+      EXPECT_FLOAT_EQ(matte.alpha[p], m / (m + n));
+      const Vec3 c = linked ? color[segment] / m : l.layer.color[p];
+      EXPECT_NEAR(matte.g[p], c.y * m / (m + n), 1e-5f);
+    }
+  }
+}
+
+// Eq. 10: nothing gets brighter or darker, whatever was filled.
+TEST(AlphaFix, KeepsTheEnergyOfTheSamples) {
+  for (const int side : {1, 2, 3})
+    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+      Linked l = random_links(seed, 36, 24, side);
+      double red = 0, green = 0, hits = 0;
+      for (std::size_t p = 0; p < l.layer.visibility.size(); ++p)
+        if (const VisibilitySample& v = l.layer.visibility[p]; v.is_hair() && !v.is_filled())
+          red += static_cast<double>(l.layer.color[p].x), green += static_cast<double>(l.layer.color[p].y), ++hits;
+      AlphaStats stats;
+      const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, stats);
+      EXPECT_EQ(matte.width, 36 / side);
+      const double pixels = side * side;
+      EXPECT_NEAR(sum(matte.r) * pixels, red, 1e-4 * red);
+      EXPECT_NEAR(sum(matte.g) * pixels, green, 1e-4 * green);
+      EXPECT_NEAR(sum(matte.alpha) * pixels, hits, 1e-4 * hits);
+    }
+}
+
+TEST(AlphaFix, AFullTableTakesFillsBackAndCountsThem) {
+  for (const int threads : {1, 4}) {
+    set_thread_count(threads);
+    Linked l = random_links(3, 64, 48, 1, 400);
+    const std::size_t fills = l.links.fills.size();
+    AlphaStats stats;
+    const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, 8, stats);
+    EXPECT_EQ(stats.segments, 8u);
+    EXPECT_GT(stats.overflow, fills / 2);
+    std::size_t filled = 0;
+    double hits = 0;
+    for (const VisibilitySample& v : l.layer.visibility) filled += v.is_filled(), hits += v.is_hair() && !v.is_filled();
+    EXPECT_EQ(filled + stats.overflow, fills);
+    EXPECT_NEAR(sum(matte.alpha), hits, 1e-3 * hits);  // energy does not depend on the table
+    set_thread_count(0);
+  }
+}
+
+TEST(AlphaFix, CoverageIsTheAlpha) {
+  Linked l = random_links(1, 20, 20, 2);
+  Rng rng(1, 1);
+  l.layer.coverage.resize(400);
+  for (float& c : l.layer.coverage) c = rng.uniform();
+  AlphaStats stats;
+  const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCoverage, stats);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 10; ++x) {
+      float mean = 0, seen = 0;
+      for (const int p : {40 * y + 2 * x, 40 * y + 2 * x + 1, 40 * y + 20 + 2 * x, 40 * y + 21 + 2 * x}) {
+        mean += l.layer.coverage[static_cast<std::size_t>(p)] / 4;
+        if (l.layer.visibility[static_cast<std::size_t>(p)].is_hair())
+          seen += l.layer.coverage[static_cast<std::size_t>(p)] / 4;
+      }
+      const auto out = static_cast<std::size_t>(10 * y + x);
+      EXPECT_NEAR(matte.coverage[out], mean, 1e-6f);
+      EXPECT_NEAR(matte.alpha[out], seen, 1e-6f);
+    }
+}
+
+TEST(AlphaFix, SameBitsForAnyThreads) {
+  const auto fixed = [](int threads) {
+    set_thread_count(threads);
+    Linked l = random_links(7, 200, 150, 1, 3000);
+    AlphaStats stats;
+    Matte m = fix_alpha(l.layer, l.links, LinkAlpha::kCount, stats);
+    set_thread_count(0);
+    return m;
+  };
+  const Matte one = fixed(1);
+  for (const int threads : {2, 5}) {
+    const Matte many = fixed(threads);
+    for (const auto plane : {&Matte::r, &Matte::g, &Matte::b, &Matte::alpha, &Matte::tangent_x})
+      EXPECT_EQ(std::memcmp((one.*plane).data(), (many.*plane).data(), one.r.size() * sizeof(float)), 0);
+  }
+}
+
+TEST(SegmentTable, HasTheSizeOfTheBox) {
+  StrandLayer layer;
+  layer.width = 10, layer.height = 8;
+  layer.visibility.resize(80);
+  layer.visibility.fill({});
+  EXPECT_EQ(segment_table_size(layer), 1u);
+  layer.visibility[2 * 10 + 3] = layer.visibility[6 * 10 + 7] = pack_visibility({1, 0}, 0, 1, false);
+  EXPECT_EQ(segment_table_size(layer), 30u);  // 5 × 5 × 1.2
+}
+
+TEST(SegmentCounts, FindsWhatWasInsertedAndNothingElse) {
+  SegmentCounts counts(1000);
+  for (std::uint32_t k = 0; k < 700; ++k) EXPECT_TRUE(counts.insert(3 * k));
+  EXPECT_EQ(counts.used(), 700u);
+  for (std::uint32_t k = 0; k < 2100; ++k) EXPECT_EQ(counts.find(k) != nullptr, k % 3 == 0) << k;
+  SegmentCounts::add_hit(*counts.find(33), {1, 2, 3});
+  SegmentCounts::add_hit(*counts.find(33), {2, 4, 0});
+  EXPECT_EQ(counts.find(33)->hit, 2u);
+  EXPECT_EQ(SegmentCounts::mean_color(*counts.find(33)), Vec3(1.5f, 3, 1.5f));
+  counts.clear();
+  EXPECT_EQ(counts.find(33), nullptr);
+}
+
+}  // namespace
+}  // namespace pelage

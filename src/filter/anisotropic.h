@@ -1,0 +1,35 @@
+// Orientation-aware filter: smooths hair along its strands. Huang 2025, §4.3 (references.bib: Huang2025Linking), and the form of
+// Lipp 2026, eq. 9 and 10 (references.bib: Lipp2026Deferred), as one kernel; docs/derivations/linking.md.
+#pragma once
+
+#include <pelage/scene.h>
+
+#include <cmath>
+
+#include "filter/matte.h"
+
+namespace pelage {
+
+/// Around a pixel with tangent T, a pixel that is `along` T and `across` it away, off by d = √(along² + across²), by θ from
+/// the direction of T and by Δ in color, weighs
+///   exp(−(d/r)²/σ_d² − θ²/σ_θ² − Δ²/σ_c² − along²/2σ∥² − across²/2σ⊥²)  where  (along/r)² + (across/ρr)² ≤ 1,
+/// and nothing elsewhere. The first three are eq. 11 of Huang 2025, the last two eq. 9 of Lipp 2026; a σ of INFINITY takes a
+/// term out.
+struct AnisotropicKernel {
+  float radius = 7;     ///< r, pixels, 0…kMostRadius; like the minor axis, it counts as half a pixel at least
+  float aspect = 0.3f;  ///< ρ, 0…1
+  float sigma_distance = INFINITY, sigma_angle = INFINITY, sigma_color = INFINITY;
+  float sigma_along = INFINITY, sigma_across = INFINITY;  ///< pixels
+
+  static constexpr float kMostRadius = 64;
+};
+
+/// The kernel of `settings` for this hair: r = k·√(Bx·By) with the sides of its box, eq. 13, at most kMostRadius.
+AnisotropicKernel kernel_for(const Matte& matte, const LinkSettings& settings);
+
+/// Weighted means (eq. 12) of color and opacity around every pixel that has a tangent, over the pixels that have one; tangents
+/// and coverage are handed on. Wide over the pixels of a row. Same bits for any number of threads and any instruction set.
+/// O(pixels with tangents · r²).
+Matte filter_anisotropic(const Matte& matte, const AnisotropicKernel& kernel);
+
+}  // namespace pelage

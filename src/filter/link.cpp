@@ -1,0 +1,230 @@
+#include "filter/link.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "kernel/scalar.h"
+
+namespace pelage {
+namespace {
+
+constexpr std::size_t kRowsPerTask = 8;
+constexpr float kLongestStep = 1.5f;    // pixels
+constexpr float kShortestStep = 1e-4f;  // of a span: gives up halving where a strand jumps
+constexpr std::uint8_t kNoNeighbor = 0xff;
+
+/// Neighbor n = 0…8 of a pixel is at (n mod 3 − 1, n div 3 − 1); 4 is the pixel itself.
+constexpr int neighbor_x(int n) { return n % 3 - 1; }
+constexpr int neighbor_y(int n) { return n / 3 - 1; }
+
+/// The grid of a layer.
+struct Grid {
+  int width, height;
+  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+};
+
+/// The neighbor whose strand fits an empty pixel best, and how well (eq. 5).
+struct Choice {
+  std::uint8_t neighbor = kNoNeighbor;
+  float score = 0;
+};
+
+class Selector {
+ public:
+  Selector(const StrandLayer& layer, const LinkSettings& settings)
+      : layer_(layer), settings_(settings), grid_{layer.width, layer.height} {}
+
+  Choice choose(int x, int y) const {
+    const float front = settings_.depth_sigma > 0 ? nearest_candidate(x, y) : 0;
+    Choice best;
+    for (int n = 0; n < 9; ++n) {
+      const float score = score_of(x, y, n, front);
+      if (score > settings_.alignment && score > best.score) best = {static_cast<std::uint8_t>(n), score};
+    }
+    return best;
+  }
+
+ private:
+  /// 0 for no candidate.
+  float score_of(int x, int y, int n, float front) const {
+    const int nx = x + neighbor_x(n), ny = y + neighbor_y(n);
+    if (n == 4 || !grid_.contains(nx, ny)) return 0;
+    const std::size_t i = grid_.index(nx, ny);
+    const VisibilitySample& sample = layer_.visibility[i];
+    if (!sample.is_hair()) return 0;
+    const Vec2 offset(static_cast<float>(x - nx), static_cast<float>(y - ny));
+    const float fit = kernel::filter_alignment(offset, sample.tangent(), settings_.sigma);
+    if (!(settings_.depth_sigma > 0)) return fit;
+    return fit * kernel::filter_depth_continuity((layer_.depth[i] - front) / front, settings_.depth_sigma);
+  }
+  float nearest_candidate(int x, int y) const {
+    float nearest = INFINITY;
+    for (int n = 0; n < 9; ++n)
+      if (const int nx = x + neighbor_x(n), ny = y + neighbor_y(n); grid_.contains(nx, ny))
+        nearest = std::min(nearest, layer_.depth[grid_.index(nx, ny)]);
+    return nearest;
+  }
+
+  const StrandLayer& layer_;
+  const LinkSettings& settings_;
+  Grid grid_;
+};
+
+/// A pixel on a walk.
+struct Step {
+  std::uint64_t order;  ///< the least fills the pixel
+  std::uint32_t pixel;
+  VisibilitySample sample;
+  float depth;
+};
+
+/// score (best first), depth (nearest first), source: 12, 20 and 32 bits.
+std::uint64_t order_of(float score, float depth, std::size_t source) {
+  const auto loss = static_cast<std::uint64_t>((1 - std::clamp(score, 0.f, 1.f)) * 4095 + 0.5f);
+  const std::uint64_t far = std::bit_cast<std::uint32_t>(depth) >> 11;
+  return loss << 52 | far << 32 | source;
+}
+
+class Walker {
+ public:
+  Walker(const StrandLayer& layer, const StrandCurves& curves)
+      : layer_(layer), curves_(curves), grid_{layer.width, layer.height} {}
+
+  /// From the sample of pixel `source` toward the tip (sign 1) or the root (−1): adds the empty pixels on the way to `steps`.
+  void walk(std::size_t source, float score, float sign, std::vector<Step>& steps) const {
+    const VisibilitySample& start = layer_.visibility[source];
+    const StrandCurve curve = curves_.curve_of(start.primitive());
+    float s = static_cast<float>(start.primitive() - curve.first_primitive) + start.t;
+    CurvePoint last;
+    if (!curves_.at(curve, s, last)) return;
+    float step = curves_.step(curve, s, layer_.depth[source], 1);
+    std::size_t pixel = source;  // the last one that was entered
+    for (int count = 0; count < most_steps(); ++count) {
+      step = std::min(step, 1.f);
+      const float next = std::clamp(s + sign * step, 0.f, curve.end);
+      CurvePoint point;
+      if (next == s || !curves_.at(curve, next, point)) return;
+      const float pixels = length(point.screen - last.screen), tried = step;
+      step = kernel::filter_next_step(step, pixels);
+      if (pixels > kLongestStep && tried > kShortestStep) continue;  // behind a place that is seen end-on: again, shorter
+      s = next, last = point;
+      const int x = static_cast<int>(std::floor(point.screen.x)), y = static_cast<int>(std::floor(point.screen.y));
+      if (!grid_.contains(x, y)) return;
+      const std::size_t entered = grid_.index(x, y);
+      if (entered == pixel) continue;
+      pixel = entered;
+      if (pixel == source) continue;
+      if (layer_.visibility[pixel].is_hair()) return;
+      if (!layer_.opaque_depth.empty() && layer_.opaque_depth[pixel] < point.depth) continue;
+      float t = 0;
+      const std::uint32_t primitive = StrandCurves::primitive_at(curve, s, t);
+      steps.push_back({order_of(score, point.depth, source), static_cast<std::uint32_t>(pixel),
+                       pack_visibility(point.tangent, t, primitive, true), point.depth});
+    }
+  }
+
+ private:
+  /// No walk along a strand needs more, unless the strand winds through the picture's pixels without ever meeting a sample.
+  int most_steps() const { return 4 * (grid_.width + grid_.height); }
+
+  const StrandLayer& layer_;
+  const StrandCurves& curves_;
+  Grid grid_;
+};
+
+/// One choice a pixel; kNoNeighbor where hair is, or none fits. Returns how many chose.
+std::size_t choose_all(const StrandLayer& layer, const LinkSettings& settings, Buffer<Choice>& choices) {
+  const Selector selector(layer, settings);
+  std::atomic<std::size_t> chosen{0};
+  parallel_for(static_cast<std::size_t>(layer.height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    std::size_t count = 0;
+    for (std::size_t p = first * static_cast<std::size_t>(layer.width), y = first; y < last; ++y)
+      for (int x = 0; x < layer.width; ++x, ++p) {
+        choices[p] = layer.visibility[p].is_hair() ? Choice{} : selector.choose(x, static_cast<int>(y));
+        count += choices[p].neighbor != kNoNeighbor;
+      }
+    chosen += count;
+  });
+  return chosen;
+}
+
+/// The best score of the empty pixels that chose (x, y), by whether they lie toward the strand's root or its tip; 0 for none.
+void scores_of_source(const StrandLayer& layer, const Buffer<Choice>& choices, int x, int y, float (&score)[2]) {
+  const Grid grid{layer.width, layer.height};
+  const Vec2 tangent = layer.visibility[grid.index(x, y)].tangent();
+  score[0] = score[1] = 0;
+  for (int n = 0; n < 9; ++n) {
+    const int ex = x + neighbor_x(n), ey = y + neighbor_y(n);
+    if (n == 4 || !grid.contains(ex, ey)) continue;
+    const Choice& choice = choices[grid.index(ex, ey)];
+    if (choice.neighbor != 8 - n) continue;  // the empty pixel sees its source on the other side
+    const Vec2 offset(static_cast<float>(neighbor_x(n)), static_cast<float>(neighbor_y(n)));
+    float& best = score[dot(offset, tangent) > 0];
+    best = std::max(best, choice.score);
+  }
+}
+
+void atomic_least(std::uint64_t& value, std::uint64_t other) {
+  const std::atomic_ref<std::uint64_t> shared(value);
+  std::uint64_t now = shared.load(std::memory_order_relaxed);
+  while (other < now && !shared.compare_exchange_weak(now, other, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace
+
+Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSettings& settings) {
+  Links links;
+  const std::size_t pixels = layer.visibility.size(), width = static_cast<std::size_t>(layer.width);
+  Buffer<Choice> choices(pixels);
+  links.candidates = choose_all(layer, settings, choices);
+
+  // All walks; every pixel learns which of them is the best.
+  const std::size_t rows = static_cast<std::size_t>(layer.height), tasks = (rows + kRowsPerTask - 1) / kRowsPerTask;
+  std::vector<std::vector<Step>> steps(tasks);
+  Buffer<std::uint64_t> best(pixels);
+  parallel_for(pixels, 1 << 16, [&](std::size_t begin, std::size_t end) {
+    std::fill(best.begin() + begin, best.begin() + end, ~std::uint64_t{0});
+  });
+  const Walker walker(layer, curves);
+  std::atomic<std::size_t> walks{0};
+  parallel_for(rows, kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    std::vector<Step>& mine = steps[first / kRowsPerTask];
+    for (std::size_t y = first; y < last; ++y)
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t p = y * width + x;
+        if (!layer.visibility[p].is_hair()) continue;
+        float score[2];
+        scores_of_source(layer, choices, static_cast<int>(x), static_cast<int>(y), score);
+        for (int tipward = 0; tipward < 2; ++tipward)
+          if (score[tipward] > 0) walker.walk(p, score[tipward], tipward ? 1.f : -1.f, mine), ++walks;
+      }
+    for (const Step& step : mine) atomic_least(best[step.pixel], step.order);
+  });
+  links.walks = walks;
+
+  // The best ones fill their pixels. A walk that meets a pixel twice fills it once: the first time.
+  std::vector<std::vector<Fill>> fills(tasks);
+  parallel_for(tasks, 1, [&](std::size_t task, std::size_t) {
+    for (const Step& step : steps[task]) {
+      if (best[step.pixel] != step.order || layer.visibility[step.pixel].is_hair()) continue;
+      const auto source = static_cast<std::uint32_t>(step.order);
+      layer.visibility[step.pixel] = step.sample;
+      layer.depth[step.pixel] = step.depth;
+      layer.color[step.pixel] = layer.color[source];
+      layer.strand[step.pixel] = layer.strand[source];
+      fills[task].push_back({step.pixel, source});
+    }
+  });
+  for (const auto& part : fills) links.fills.insert(links.fills.end(), part.begin(), part.end());
+  std::sort(links.fills.begin(), links.fills.end(), [](const Fill& a, const Fill& b) { return a.pixel < b.pixel; });
+  return links;
+}
+
+}  // namespace pelage

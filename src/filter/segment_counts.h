@@ -1,0 +1,49 @@
+// How many pixels of a segment were hit and how many filled: a hash table that many threads write to.
+#pragma once
+
+#include <pelage/vec.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/buffer.h"
+
+namespace pelage {
+
+/// Lock-free, with bounded probes; size by Huang 2025, eq. 14. Insert everything, then count, then read: each from as many
+/// threads as you like, but one kind at a time.
+class SegmentCounts {
+ public:
+  static constexpr std::size_t kMaxProbes = 64;
+
+  /// Counts and colors of a segment. Sums are integers, so that their order does not matter.
+  struct Slot {
+    std::uint32_t key;  ///< kFree, or a segment
+    std::uint32_t hit, filled;
+    std::uint64_t red, green, blue;  ///< over the hit pixels, units of kColorUnit
+  };
+  static constexpr std::uint32_t kFree = 0xffffffffu;
+  static constexpr float kColorUnit = 0x1p-20f;
+
+  /// With `slots` > 0 slots.
+  explicit SegmentCounts(std::size_t slots);
+
+  /// False where there is no free slot within kMaxProbes.
+  bool insert(std::uint32_t key);
+  /// Null for a key that was never inserted, or found no place.
+  Slot* find(std::uint32_t key);
+  /// Takes all keys out.
+  void clear();
+  std::size_t used() const;
+
+  static void add_hit(Slot& slot, Vec3 color);
+  static void add_filled(Slot& slot) { std::atomic_ref(slot.filled).fetch_add(1, std::memory_order_relaxed); }
+  /// Mean color of the hit pixels; `slot.hit` > 0.
+  static Vec3 mean_color(const Slot& slot);
+
+ private:
+  Buffer<Slot> slots_;
+};
+
+}  // namespace pelage

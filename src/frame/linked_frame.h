@@ -1,0 +1,22 @@
+// One frame by strand linking: the layer that linking works on, and what becomes of it.
+#pragma once
+
+#include <pelage/image.h>
+
+#include "frame/one_frame.h"
+#include "frame/visibility.h"
+
+namespace pelage {
+
+class StrandCurves;
+
+/// One sample in the middle of each pixel of inputs.view, which has `side`² pixels for one of the picture's; with the exact
+/// area of strands where `coverage` is set.
+StrandLayer render_strand_layer(const FrameInputs& inputs, int side, bool coverage, Stages& stages);
+
+/// Links, alpha fix and filter as scene.settings.link says: R, G, B, A, linear, premultiplied, of the size of the picture.
+/// `nearest`, where given, becomes [h·w]: camera z of what a pixel's first visibility pixel shows after linking.
+Image link_and_filter(StrandLayer layer, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
+                      Buffer<float>* nearest = nullptr);
+
+}  // namespace pelage

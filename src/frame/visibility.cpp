@@ -1,0 +1,46 @@
+#include "frame/visibility.h"
+
+#include <pelage/error.h>
+
+#include <fmt/format.h>
+
+#include "frame/camera_view.h"
+
+namespace pelage {
+
+SegmentNumbering number_spans(const Scene& scene) {
+  SegmentNumbering spans;
+  std::uint64_t count = 0;
+  for (const GroomInstance& groom : scene.grooms) {
+    spans.groom_base.push_back(static_cast<std::uint32_t>(count));
+    spans.subdivisions.push_back(1);
+    count += groom.strands->point_count();
+    if (count > VisibilitySample::kMaxPrimitive)
+      throw Error("groom", groom.name, fmt::format("{} spans, more than the 30 bits of a visibility sample can name", count),
+                  "use another method than link, or split the scene");
+  }
+  spans.groom_base.push_back(static_cast<std::uint32_t>(count));
+  return spans;
+}
+
+StrandPlaces::StrandPlaces(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering)
+    : scene_(scene), view_(view), numbering_(numbering), spans_(number_spans(scene)) {
+  std::uint32_t strands = 0;
+  for (const GroomInstance& groom : scene.grooms) {
+    first_strand_.push_back(strands);
+    strands += static_cast<std::uint32_t>(groom.strands->strand_count());
+  }
+}
+
+StrandPlace StrandPlaces::place(const SegmentRef& segment, float t, const StrandSurface& surface) const {
+  const Vec3 c = transform_point(view_.world_to_camera, surface.position);
+  const Vec2 along = project_direction(view_, c, transform_vector(view_.world_to_camera, surface.tangent));
+  const float pixels = length(along), subdivisions = static_cast<float>(numbering_.subdivisions[segment.groom]);
+  const std::uint32_t span =
+      spans_.groom_base[segment.groom] + scene_.grooms[segment.groom].strands->offsets[segment.strand] + segment.span;
+  return {pack_visibility(pixels > 0 ? along * (1 / pixels) : Vec2(), (static_cast<float>(segment.k) + t) / subdivisions, span,
+                          false),
+          first_strand_[segment.groom] + segment.strand};
+}
+
+}  // namespace pelage

@@ -1,0 +1,77 @@
+// The visibility buffer of strand linking: one fragment of a strand a pixel.
+#pragma once
+
+#include <pelage/scene.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "core/buffer.h"
+#include "frame/frame.h"
+#include "frame/segment_lookup.h"
+
+namespace pelage {
+
+/// What a visibility pixel shows, in the four words of Huang 2025, §5.1 (references.bib: Huang2025Linking).
+///
+/// A primitive is a span of a strand, numbered through all grooms (span s of strand i of groom g: spans of the grooms before +
+/// offsets[i] + s), or whatever another renderer numbers its strands by.
+struct VisibilitySample {
+  float normal_x = 0, normal_y = 0;  ///< unit normal of the strand on the screen: its tangent, turned by 90°; 0, 0 seen end-on
+  float t = 0;                       ///< place on the primitive, 0…1 from root to tip
+  std::uint32_t bits = 0;            ///< bit 0: hair; bit 1: filled by linking; bits 2…31: primitive
+
+  static constexpr std::uint32_t kHair = 1, kFilled = 2, kMaxPrimitive = (1u << 30) - 1;
+  bool is_hair() const { return bits & kHair; }
+  bool is_filled() const { return bits & kFilled; }
+  std::uint32_t primitive() const { return bits >> 2; }
+  /// Unit tangent on the screen, root to tip (x right, y down).
+  Vec2 tangent() const { return {normal_y, -normal_x}; }
+};
+static_assert(sizeof(VisibilitySample) == 16);
+
+/// `primitive` ≤ kMaxPrimitive; `tangent` a unit vector on the screen, or 0.
+inline VisibilitySample pack_visibility(Vec2 tangent, float t, std::uint32_t primitive, bool filled) {
+  return {-tangent.y, tangent.x, t, primitive << 2 | (filled ? VisibilitySample::kFilled : 0) | VisibilitySample::kHair};
+}
+
+/// Where on which strand a sample of hair is.
+struct StrandPlace {
+  VisibilitySample sample;
+  std::uint32_t strand = 0;  ///< numbered through all grooms
+};
+
+/// Ids of VisibilitySample::primitive() for a scene: those of its segments, would every span be one. Throws Error where 30 bits
+/// do not name them.
+SegmentNumbering number_spans(const Scene& scene);
+
+/// From segments of a G-buffer to places on strands. Refers to the scene and all else.
+class StrandPlaces {
+ public:
+  StrandPlaces(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering);
+  /// `surface` is that of the segment at t (frame/segment_lookup.h).
+  StrandPlace place(const SegmentRef& segment, float t, const StrandSurface& surface) const;
+
+ private:
+  const Scene& scene_;
+  const CameraView& view_;
+  const SegmentNumbering& numbering_;
+  SegmentNumbering spans_;
+  std::vector<std::uint32_t> first_strand_;  // of each groom
+};
+
+/// One sample of hair a visibility pixel, and what is there without hair. A screen pixel is a square of `side`² visibility
+/// pixels (side 1: one sample a pixel).
+struct StrandLayer {
+  int width = 0, height = 0;            ///< visibility pixels
+  int side = 1;                         ///< visibility pixels a side of a screen pixel
+  Buffer<VisibilitySample> visibility;  ///< [h·w]
+  Buffer<std::uint32_t> strand;         ///< [h·w] strand of the sample, numbered through all grooms; any where there is none
+  Buffer<float> depth;                  ///< [h·w] camera z of the strand, metres; +inf for none
+  Buffer<Vec3> color;                   ///< [h·w] its scene-linear radiance; 0 for none
+  Buffer<float> coverage;               ///< [h·w] share of the pixel that strands cover, 0…1; or empty where nobody knows
+  Buffer<float> opaque_depth;           ///< [h·w] camera z of the opaque scene, +inf for none; or empty without one
+  Buffer<Vec4> behind;                  ///< [h·w] what is seen without hair: linear, premultiplied R, G, B, A
+};
+
+}  // namespace pelage
