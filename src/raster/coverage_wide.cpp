@@ -52,7 +52,7 @@ void append(const SegmentLanes& w, Mask used, Float column, Float row, Float are
   HWY_ALIGN std::uint32_t pixels[hn::MaxLanes(wide::UintTag())];
   hn::Store(area.v, kFloat, areas);
   hn::Store(depth.v, kFloat, depths);
-  hn::Store(pixels_at(w, column, row), kUint, pixels);
+  hn::Store(pixel_in_column(w, first_in_column(w, column), row), kUint, pixels);
   std::uint64_t bits = 0;
   hn::StoreMaskBits(kFloat, used.m, reinterpret_cast<std::uint8_t*>(&bits));
   for (; bits != 0; bits &= bits - 1) {

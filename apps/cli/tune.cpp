@@ -1,0 +1,177 @@
+// pelage tune filter: the size of the linking filter's kernel that comes nearest to a reference.
+#include <fmt/format.h>
+#include <pelage/metrics.h>
+#include <pelage/pelage.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/atomic_file.h"
+#include "picture_file.h"
+#include "render.h"
+#include "terminal.h"
+#include "verbs.h"
+
+namespace pelage::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct TuneVerb {
+  RenderOptions scene;
+  std::vector<std::string> inputs;
+  std::vector<float> kernel_sizes{0.002f, 0.004f, 0.006f, 0.008f, 0.01f, 0.014f, 0.02f}, aspects{0.3f};
+  int reference_samples = 64;
+  std::string output;
+  bool json = false;
+};
+
+/// Mean squared errors of one scene, linear, over the pixels that its hair covers.
+struct Case {
+  std::string name;
+  double input = 0;               ///< of one sample a pixel, without link and filter
+  std::vector<double> error;      ///< by aspect, then by kernel size
+};
+
+double error_of(const Image& test, const Image& reference, const PixelMask& mask) {
+  CompareOptions options;
+  options.metrics = {"mse"}, options.mask = mask;
+  return compare_images({test}, {reference}, options).value("mse").value_or(0);
+}
+
+/// One scene by all kernels; reference and light maps are made once.
+Case measure(const TuneVerb& verb, const std::string& input, const Progress& progress, std::vector<std::string>& notes) {
+  RenderOptions options = verb.scene;
+  options.input = input;
+  Scene scene = make_scene(options, progress, notes);
+  RenderSettings& settings = scene.settings;
+  const auto picture = [&](Method method, int samples) {
+    settings.method = method, settings.samples = samples;
+    return render(scene, progress).linear;
+  };
+  settings.view = View::kCoverage;
+  const PixelMask mask = hair_mask({picture(Method::kMsaa, 1), Encoding::kLinear, input});
+  settings.view = View::kBeauty;
+  const Image reference = picture(Method::kSsaa, verb.reference_samples);
+  Case result{input, error_of(picture(Method::kMsaa, 1), reference, mask), {}};
+  for (const float aspect : verb.aspects)
+    for (const float kernel_size : verb.kernel_sizes) {
+      settings.link.aspect = aspect, settings.link.kernel_size = kernel_size;
+      result.error.push_back(error_of(picture(Method::kLink, 1), reference, mask));
+    }
+  return result;
+}
+
+/// Mean over the cases of the error as a share of the input's: a bright scene counts as much as a dark one.
+std::vector<double> mean_shares(const std::vector<Case>& cases) {
+  std::vector<double> mean(cases.front().error.size());
+  for (const Case& c : cases)
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += c.error[i] / c.input / static_cast<double>(cases.size());
+  return mean;
+}
+
+/// The curve of every case and their mean over the kernel's size, for the best aspect, as an SVG picture.
+std::string plot(const TuneVerb& verb, const std::vector<Case>& cases, const std::vector<double>& mean, std::size_t best) {
+  const std::size_t sizes = verb.kernel_sizes.size(), first = best / sizes * sizes;
+  double top = 0;
+  for (const Case& c : cases)
+    for (std::size_t i = 0; i < sizes; ++i) top = std::max(top, c.error[first + i] / c.input);
+  const double right = static_cast<double>(*std::max_element(verb.kernel_sizes.begin(), verb.kernel_sizes.end()));
+  const auto x = [&](std::size_t i) { return 60 + 420 * static_cast<double>(verb.kernel_sizes[i]) / std::max(right, 1e-9); };
+  const auto y = [&](double share) { return 280 - 250 * share / std::max(top, 1e-9); };
+  const auto line = [&](const std::string& style, const auto& share) {
+    std::string points;
+    for (std::size_t i = 0; i < sizes; ++i) points += fmt::format("{:.1f},{:.1f} ", x(i), y(share(i)));
+    return fmt::format("<polyline fill=\"none\" {} points=\"{}\"/>\n", style, points);
+  };
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 500 330\" font-family=\"sans-serif\" font-size=\"12\">\n"
+      "<rect width=\"500\" height=\"330\" fill=\"white\"/>\n<path d=\"M60 30V280H480\" fill=\"none\" stroke=\"black\"/>\n";
+  for (const Case& c : cases)
+    svg += line("stroke=\"#999\"", [&](std::size_t i) { return c.error[first + i] / c.input; });
+  svg += line("stroke=\"#c30\" stroke-width=\"2\"", [&](std::size_t i) { return mean[first + i]; });
+  for (std::size_t i = 0; i < sizes; ++i)
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"296\" text-anchor=\"middle\">{}</text>\n", x(i), verb.kernel_sizes[i]);
+  svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"#c30\"/>\n", x(best - first), y(mean[best]));
+  svg += fmt::format("<text x=\"54\" y=\"34\" text-anchor=\"end\">{:.2f}</text><text x=\"54\" y=\"284\" text-anchor=\"end\">0</text>\n", top);
+  return svg + "<text x=\"270\" y=\"318\" text-anchor=\"middle\">kernel size k</text>\n"
+               "<text x=\"70\" y=\"22\">mean squared error, as a share of one sample's; red: mean of the cases</text>\n</svg>\n";
+}
+
+void print_table(const TuneVerb& verb, const std::vector<Case>& cases, const std::vector<double>& mean, std::size_t best) {
+  fmt::print("{:>7} {:>8} {:>10}", "k", "aspect", "mean");
+  for (const Case& c : cases) fmt::print(" {:>12.12}", c.name.substr(c.name.find_last_of('/') + 1));
+  fmt::print("   error as a share of one sample's\n");
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const std::size_t sizes = verb.kernel_sizes.size();
+    fmt::print("{:>7} {:>8} {:>10.4f}", verb.kernel_sizes[i % sizes], verb.aspects[i / sizes], mean[i]);
+    for (const Case& c : cases) fmt::print(" {:>12.4f}", c.error[i] / c.input);
+    fmt::print("{}\n", i == best ? "   best" : "");
+  }
+}
+
+void print_json(const TuneVerb& verb, const std::vector<Case>& cases, const std::vector<double>& mean, std::size_t best) {
+  const std::size_t sizes = verb.kernel_sizes.size();
+  Json json{{"best", {{"kernel_size", verb.kernel_sizes[best % sizes]}, {"aspect", verb.aspects[best / sizes]}}}};
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    Json row{{"kernel_size", verb.kernel_sizes[i % sizes]}, {"aspect", verb.aspects[i / sizes]}, {"share", mean[i]}};
+    for (const Case& c : cases) row["mse"].push_back(c.error[i]);
+    json["kernels"].push_back(row);
+  }
+  for (const Case& c : cases) json["cases"].push_back({{"input", c.name}, {"mse_of_one_sample", c.input}});
+  fmt::print("{}\n", json.dump(2));
+}
+
+void tune_filter(const TuneVerb& verb) {
+  if (!verb.output.empty()) check_output(verb.output);
+  std::vector<std::string> notes;
+  std::vector<Case> cases;
+  {
+    ProgressLine line;
+    const Progress progress = line.callback();
+    for (const std::string& input : verb.inputs) cases.push_back(measure(verb, input, progress, notes));
+  }
+  const std::vector<double> mean = mean_shares(cases);
+  const auto best = static_cast<std::size_t>(std::min_element(mean.begin(), mean.end()) - mean.begin());
+  if (!verb.output.empty()) {
+    const std::string svg = plot(verb, cases, mean, best);
+    io::AtomicFile file(verb.output);
+    file.write(svg);
+    file.commit();
+  }
+  for (const std::string& note : notes) fmt::print(stderr, "pelage: {}\n", note);
+  if (verb.json) print_json(verb, cases, mean, best);
+  else print_table(verb, cases, mean, best);
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("tune", "Choose parameters of a method by what comes nearest to a reference");
+  verb->require_subcommand(1);
+  CLI::App* filter = verb->add_subcommand("filter", "The kernel of the linking filter, by least mean squared error on hair");
+  auto o = std::make_shared<TuneVerb>();
+  filter->add_option("INPUT", o->inputs, "Groom files or scene files, each a case")->type_name("FILE")->required();
+  filter->add_option("--kernel-sizes", o->kernel_sizes, "Sizes k to try: half of the length over the size of the hair")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("A,B");
+  filter->add_option("--aspects", o->aspects, "Aspects to try")->delimiter(',')->check(CLI::Range(0.0, 1.0))->type_name("A,B");
+  filter->add_option("--reference-spp", o->reference_samples, "Samples a pixel of the reference, each shaded")
+      ->check(CLI::Range(1, 4096));
+  filter->add_option("-o,--output", o->output, "Plot of the errors over k")->type_name("FILE.svg");
+  filter->add_flag("--json", o->json, "Print JSON");
+  add_scene_options(*filter, o->scene);
+  add_machine_options(*filter);
+  filter->footer(
+      "Renders every case by `--method ssaa` once and by `--method link` with every kernel.\n"
+      "Example:\n"
+      "  pelage tune filter straight.pelage curly.pelage --size 960x540 -o kernel.svg");
+  filter->callback([o] { tune_filter(*o); });
+}
+
+}  // namespace pelage::cli
