@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/check.h"
 #include "io/scene_tables.h"
 #include "picture_file.h"
 #include "terminal.h"
@@ -32,10 +33,11 @@ std::vector<std::string> channels_of_layer(const std::string& name) {
 // Appends the channels of other views of the same scene: their own passes, without light.
 void append_layers(const Scene& scene, const std::vector<std::string>& layers, const Progress& progress, Image& image) {
   static const std::vector<std::pair<std::string, View>> kLayers{
-      {"Z", View::kDepth},         {"coverage", View::kCoverage}, {"id", View::kStrandId},      {"u", View::kU},
-      {"tangent", View::kTangent}, {"albedo", View::kAlbedo},     {"overdraw", View::kOverdraw}};
+      {"Z", View::kDepth},         {"coverage", View::kCoverage}, {"id", View::kStrandId},       {"u", View::kU},
+      {"tangent", View::kTangent}, {"albedo", View::kAlbedo},     {"overdraw", View::kOverdraw}, {"motion", View::kMotion}};
   for (const std::string& name : layers) {
     const auto layer = std::find_if(kLayers.begin(), kLayers.end(), [&](const auto& l) { return l.first == name; });
+    PELAGE_CHECK(layer != kLayers.end());
     Scene pass = scene;
     pass.settings.view = layer->second;
     const Image data = render(pass, progress).linear;

@@ -33,8 +33,8 @@ struct TuneVerb {
 /// Mean squared errors of one scene, linear, over the pixels that its hair covers.
 struct Case {
   std::string name;
-  double input = 0;               ///< of one sample a pixel, without link and filter
-  std::vector<double> error;      ///< by aspect, then by kernel size
+  double input = 0;           ///< of one sample a pixel, without link and filter
+  std::vector<double> error;  ///< by aspect, then by kernel size
 };
 
 double error_of(const Image& test, const Image& reference, const PixelMask& mask) {
@@ -91,15 +91,16 @@ std::string plot(const TuneVerb& verb, const std::vector<Case>& cases, const std
   std::string svg =
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 500 330\" font-family=\"sans-serif\" font-size=\"12\">\n"
       "<rect width=\"500\" height=\"330\" fill=\"white\"/>\n<path d=\"M60 30V280H480\" fill=\"none\" stroke=\"black\"/>\n";
-  for (const Case& c : cases)
-    svg += line("stroke=\"#999\"", [&](std::size_t i) { return c.error[first + i] / c.input; });
+  for (const Case& c : cases) svg += line("stroke=\"#999\"", [&](std::size_t i) { return c.error[first + i] / c.input; });
   svg += line("stroke=\"#c30\" stroke-width=\"2\"", [&](std::size_t i) { return mean[first + i]; });
   for (std::size_t i = 0; i < sizes; ++i)
     svg += fmt::format("<text x=\"{:.1f}\" y=\"296\" text-anchor=\"middle\">{}</text>\n", x(i), verb.kernel_sizes[i]);
   svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"#c30\"/>\n", x(best - first), y(mean[best]));
-  svg += fmt::format("<text x=\"54\" y=\"34\" text-anchor=\"end\">{:.2f}</text><text x=\"54\" y=\"284\" text-anchor=\"end\">0</text>\n", top);
-  return svg + "<text x=\"270\" y=\"318\" text-anchor=\"middle\">kernel size k</text>\n"
-               "<text x=\"70\" y=\"22\">mean squared error, as a share of one sample's; red: mean of the cases</text>\n</svg>\n";
+  svg += fmt::format(
+      "<text x=\"54\" y=\"34\" text-anchor=\"end\">{:.2f}</text><text x=\"54\" y=\"284\" text-anchor=\"end\">0</text>\n", top);
+  return svg +
+         "<text x=\"270\" y=\"318\" text-anchor=\"middle\">kernel size k</text>\n"
+         "<text x=\"70\" y=\"22\">mean squared error, as a share of one sample's; red: mean of the cases</text>\n</svg>\n";
 }
 
 void print_table(const TuneVerb& verb, const std::vector<Case>& cases, const std::vector<double>& mean, std::size_t best) {

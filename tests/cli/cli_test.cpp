@@ -5,12 +5,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <pelage/io.h>
 #include <thread>
 
 #include "cli/cli_kit.h"
@@ -152,6 +155,14 @@ TEST_F(Cli, WritesSequences) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.001.exr", "a.002.exr", "a.003.exr", "last.png"));
   EXPECT_THAT(slurp(in("a.002.exr")), HasSubstr("motion.X"));
   EXPECT_NE(slurp(in("a.001.exr")), slurp(in("a.002.exr")));
+  const Image second = read_image(in("a.002.exr").string());
+  const auto motion =
+      static_cast<std::size_t>(std::find(second.channels.begin(), second.channels.end(), "motion.X") - second.channels.begin());
+  float fastest = 0;
+  for (std::size_t i = motion; i < second.pixels.size(); i += second.channel_count())
+    fastest = std::max(fastest, std::abs(second.pixels[i]));
+  EXPECT_GT(fastest, 0.05f) << "pixels";
+  EXPECT_LT(fastest, 5);
   // The last picture of an orbit is the picture of the turned camera, where nothing is taken over from the others.
   EXPECT_EQ(run("render hair.pelage --size 40x30 --view strand-id -o b.png --orbit 2 --frames 3").status, 0);
   EXPECT_EQ(run("render hair.pelage --size 40x30 --view strand-id -o c.png --turn 4").status, 0);
