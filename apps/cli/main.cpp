@@ -25,6 +25,7 @@ void add_verbs(CLI::App& app) {
   add_compare(app);
   add_trace(app);
   add_report(app);
+  add_tune(app);
   add_bench(app);
 }
 

@@ -75,8 +75,8 @@ void add_stats(std::vector<StageStat>& total, const std::vector<StageStat>& stat
 // Renders the pictures that the options ask for, one camera after another, and writes each. Numbered files take every picture,
 // others the last; methods that take nothing over from picture to picture skip what nobody asked for.
 RenderResult render_pictures(const RenderOptions& options, Scene scene, const Progress& progress) {
-  const bool all =
-      scene.settings.method == Method::kTaa || std::any_of(options.outputs.begin(), options.outputs.end(), is_numbered);
+  const bool all = scene.settings.method == Method::kTaa || scene.settings.method == Method::kLinkTaa ||
+                   std::any_of(options.outputs.begin(), options.outputs.end(), is_numbered);
   const int pictures = makes_sequence(options) ? options.frames.value_or(kDefaultPictures) : 1;
   const Camera start = scene.camera;
   const auto camera_at = [&](int i) { return turned(start, options.orbit.value_or(0.f) * static_cast<float>(i)); };

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "io/atomic_file.h"
-#include "picture_file.h"
 #include "render.h"
 #include "terminal.h"
 #include "verbs.h"
@@ -127,8 +126,14 @@ void print_json(const TuneVerb& verb, const std::vector<Case>& cases, const std:
   fmt::print("{}\n", json.dump(2));
 }
 
+/// Before the long work: the name, and whether it can be written.
+void check_plot(const std::string& path) {
+  if (!path.ends_with(".svg")) throw UsageError("--output", path, "the plot is an SVG picture", "call it name.svg");
+  const io::AtomicFile probe(path);
+}
+
 void tune_filter(const TuneVerb& verb) {
-  if (!verb.output.empty()) check_output(verb.output);
+  if (!verb.output.empty()) check_plot(verb.output);
   std::vector<std::string> notes;
   std::vector<Case> cases;
   {

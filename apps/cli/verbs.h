@@ -20,6 +20,7 @@ void add_convert(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_trace(CLI::App& app);
 void add_report(CLI::App& app);
+void add_tune(CLI::App& app);
 void add_bench(CLI::App& app);
 
 /// Adds --threads and --isa, which act as they are parsed.

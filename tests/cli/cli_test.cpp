@@ -174,6 +174,40 @@ TEST_F(Cli, WritesSequences) {
   EXPECT_NE(slurp(in("d.1.png")), slurp(in("e.png")));
 }
 
+TEST_F(Cli, LinksStrands) {
+  make_hair();
+  EXPECT_EQ(run("render hair.pelage --size 64x48 --method link -o a.png").status, 0);
+  EXPECT_EQ(run("render hair.pelage --size 64x48 --method link --spp 4 --alpha coverage --kernel-size 0.02 -o b.png").status,
+            0);
+  EXPECT_NE(slurp(in("a.png")), slurp(in("b.png")));
+  const Outcome stats = run("render hair.pelage --size 64x48 --method link -o a.png --stats");
+  for (const char* stage : {"filter.visibility", "filter.link", "filter.alpha", "filter.anisotropic"})
+    EXPECT_THAT(stats.out, HasSubstr(stage));
+  const Outcome wrong = run("render hair.pelage --method link --spp 8 -o c.png");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("1, 4, 9 or 16"));
+  EXPECT_FALSE(std::filesystem::exists(in("c.png")));
+}
+
+TEST_F(Cli, TunesTheFilter) {
+  make_hair();
+  const Outcome outcome = run(
+      "tune filter hair.pelage --size 64x48 --reference-spp 16 --kernel-sizes 0,0.03,0.5 --aspects 0.3,0.6 --json -o k.svg");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(json["kernels"].size(), 6u);
+  double least = 1e9;
+  for (const auto& k : json["kernels"]) least = std::min(least, k["share"].get<double>());
+  for (const auto& k : json["kernels"])
+    if (k["kernel_size"] == json["best"]["kernel_size"] && k["aspect"] == json["best"]["aspect"]) {
+      EXPECT_EQ(k["share"], least);
+    }
+  EXPECT_LT(least, json["kernels"][0]["share"].get<double>());  // not to smooth at all
+  EXPECT_THAT(slurp(in("k.svg")), HasSubstr("</svg>"));
+  EXPECT_EQ(run("tune filter hair.pelage -o k.png").status, 2);
+  EXPECT_EQ(run("tune filter nothing.pelage").status, 1);
+}
+
 TEST_F(Cli, JsonIsTheSameForAnyThreads) {
   make_hair();
   std::string hash, picture;
