@@ -10,6 +10,7 @@ void add_light_cases(Suite& suite);
 void add_shade_cases(Suite& suite);
 void add_metrics_cases(Suite& suite);
 void add_filter_cases(Suite& suite);
+void add_link_cases(Suite& suite);
 void add_frame_cases(Suite& suite);
 void add_reference_cases(Suite& suite);
 
@@ -22,6 +23,7 @@ Suite all_cases() {
   add_shade_cases(suite);
   add_metrics_cases(suite);
   add_filter_cases(suite);
+  add_link_cases(suite);
   add_frame_cases(suite);
   add_reference_cases(suite);
   return suite;

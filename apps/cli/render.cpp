@@ -139,7 +139,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->type_name("NAME");
   verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic; of link: count, coverage")
       ->type_name("NAME");
-  verb.add_option("--kernel-size", o.kernel_size, "link: half of the filter's length over the size of the hair; 0.01")
+  verb.add_option("--kernel-size", o.kernel_size, "link: half of the filter's length over the size of the hair; 0.006")
       ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')

@@ -134,8 +134,8 @@ struct LinkSettings {
   float depth_sigma = 0;      ///< pixels of depth; > 0: of strands that fit, those farther behind count less. 0: as published
   LinkAlpha alpha = LinkAlpha::kCount;
   bool filter = true;               ///< false: only links and alpha fix
-  float kernel_size = 0.01f;        ///< k of eq. 13: half of the kernel's major axis over the size of the hair on the screen
-  float aspect = 0.3f;              ///< ρ, its minor over its major axis, 0…1
+  float kernel_size = 0.006f;       ///< k of eq. 13: half of the kernel's major axis over the size of the hair; published: 0.01
+  float aspect = 0.2f;              ///< ρ, its minor over its major axis, 0…1
   float sigma_distance = INFINITY;  ///< σ_d of eq. 11, in units of r; INFINITY: all distances within the kernel count alike
   float sigma_angle = INFINITY;     ///< σ_θ of eq. 11, radians
   float sigma_color = INFINITY;     ///< σ_c of eq. 11, linear radiance

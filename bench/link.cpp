@@ -1,0 +1,105 @@
+// Strand linking: what it costs beside the raster pass that it repairs.
+#include <pelage/runtime.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+
+#include "assemble/assemble.h"
+#include "bench.h"
+#include "core/mesh_tracer.h"
+#include "filter/alpha_fix.h"
+#include "filter/anisotropic.h"
+#include "filter/link.h"
+#include "filter/strand_curves.h"
+#include "frame/camera_view.h"
+#include "frame/linked_frame.h"
+#include "grooms.h"
+#include "light/light.h"
+#include "raster/raster.h"
+
+namespace pelage::bench {
+namespace {
+
+/// A groom on the screen, and the samples of it that linking starts from.
+struct Linkable {
+  Scene scene;
+  CameraView view;
+  SegmentNumbering numbering;
+  StrandLayer layer;
+
+  Linkable(const std::string& groom, int width, int height) : scene(groom_scene(groom)) {
+    add_default_lights(scene);
+    scene.settings.width = width, scene.settings.height = height;
+    view = make_camera_view(scene.camera, width, height);
+    numbering = number_segments(scene, view);
+    const MeshTracer meshes(scene.meshes);
+    const LightRig rig = prepare_lights(scene, meshes);
+    Stages stages{Progress()};
+    layer = render_strand_layer({scene, meshes, rig, view, numbering}, 1, false, stages);
+  }
+
+  /// Links, alpha fix, filter; the layer is as before afterwards.
+  Matte repair() {
+    const Links links = link_strands(layer, GroomCurves(scene, view), scene.settings.link);
+    AlphaStats stats;
+    Matte matte = fix_alpha(layer, links, LinkAlpha::kCount, stats);
+    for (const Fill& fill : links.fills)
+      layer.visibility[fill.pixel] = {}, layer.depth[fill.pixel] = INFINITY, layer.color[fill.pixel] = {};
+    extend_tangents(matte, 2);
+    return filter_anisotropic(matte, kernel_for(matte, scene.settings.link));
+  }
+};
+
+/// Items are pixels that show hair: time has to grow with them, and with nothing else.
+Workload repair_workload(const std::string& groom, int width, int height) {
+  const auto input = std::make_shared<Linkable>(groom, width, height);
+  const auto hair = std::count_if(input->layer.visibility.begin(), input->layer.visibility.end(),
+                                  [](const VisibilitySample& v) { return v.is_hair(); });
+  const auto check = [input]() -> std::string {
+    const Matte many = input->repair();
+    const int threads = thread_count();
+    set_thread_count(1);
+    const Matte one = input->repair();
+    set_thread_count(threads);
+    return std::equal(one.g.begin(), one.g.end(), many.g.begin()) ? "" : "not the bits of one thread";
+  };
+  return {.check = check, .run = [input] { input->repair(); }, .items = static_cast<double>(hair)};
+}
+
+/// The center layer of the same frame; as many items, so that the ratio is one of times.
+Workload raster_workload(const std::string& groom, int width, int height) {
+  const auto input = std::make_shared<Linkable>(groom, width, height);
+  const auto hair = std::count_if(input->layer.visibility.begin(), input->layer.visibility.end(),
+                                  [](const VisibilitySample& v) { return v.is_hair(); });
+  const auto g = std::make_shared<GBuffer>();
+  const auto run = [input, g] { raster_strands(input->scene, input->view, input->numbering, {}, *g); };
+  const auto check = [run, g, hair]() -> std::string {
+    run();
+    const auto hit = std::count_if(g->center.begin(), g->center.end(), [](PixelKey key) { return key != kEmptyPixel; });
+    return hit == hair ? "" : "not the pixels that linking starts from";
+  };
+  return {.check = check, .run = run, .items = static_cast<double>(hair)};
+}
+
+}  // namespace
+
+void add_link_cases(Suite& suite) {
+  for (const std::string& groom :
+       {std::string("straight50k"), std::string("curly50k"), std::string("curly200k"), std::string("sintel")}) {
+    const std::string repair = "link.repair." + groom, raster = "link.raster." + groom;
+    suite.cases.push_back({repair, "hair_pixels_per_second", "1/s", [groom] { return repair_workload(groom, 1920, 1080); }});
+    suite.cases.push_back({raster, "hair_pixels_per_second", "1/s", [groom] { return raster_workload(groom, 1920, 1080); }});
+    suite.ratios.push_back({"link.share." + groom, {raster, 2}, {repair, 2}});
+    suite.ratios.push_back({"link.scaling." + groom, {repair, 2}, {repair, 1}});
+  }
+  for (const auto& [name, width, height] : {std::tuple{"480p", 854, 480}, std::tuple{"4k", 3840, 2160}}) {
+    const std::string repair = std::string("link.repair.curly50k_") + name;
+    suite.cases.push_back(
+        {repair, "hair_pixels_per_second", "1/s", [w = width, h = height] { return repair_workload("curly50k", w, h); }});
+  }
+}
+
+}  // namespace pelage::bench
