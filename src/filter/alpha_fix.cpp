@@ -91,6 +91,7 @@ void resolve_hair(const StrandLayer& layer, Matte& matte, const Hair& hair) {
       const std::size_t corner = out / width * side * static_cast<std::size_t>(layer.width) + out % width * side;
       Vec3 sum;
       float alpha = 0;
+      Vec2 tangent;
       MeanDirection direction;
       for (std::size_t s = 0; s < side * side; ++s) {
         const std::size_t p = corner + s / side * static_cast<std::size_t>(layer.width) + s % side;
@@ -98,9 +99,10 @@ void resolve_hair(const StrandLayer& layer, Matte& matte, const Hair& hair) {
         Vec3 color = layer.color[p];
         const float a = hair(p, color);
         sum += color * a, alpha += a;
-        direction.add(layer.visibility[p].tangent());
+        tangent = layer.visibility[p].tangent();
+        direction.add(tangent);
       }
-      const Vec2 tangent = direction.mean();
+      if (side > 1) tangent = direction.mean();
       matte.r[out] = sum.x * share, matte.g[out] = sum.y * share, matte.b[out] = sum.z * share;
       matte.alpha[out] = alpha * share;
       matte.tangent_x[out] = tangent.x, matte.tangent_y[out] = tangent.y;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "filter/hair_box.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
@@ -141,12 +142,18 @@ class Walker {
 /// One choice a pixel; kNoNeighbor where hair is, or none fits. Returns how many chose.
 std::size_t choose_all(const StrandLayer& layer, const LinkSettings& settings, Buffer<Choice>& choices) {
   const Selector selector(layer, settings);
+  const HairBox hair = hair_box(layer.width, layer.height, [&](std::size_t p) { return layer.visibility[p].is_hair(); });
+  const auto may_choose = [&](std::size_t x, std::size_t y) {
+    const int i = static_cast<int>(x), j = static_cast<int>(y);
+    return i >= hair.left - 1 && i <= hair.right && j >= hair.top - 1 && j <= hair.bottom;
+  };
   std::atomic<std::size_t> chosen{0};
   parallel_for(static_cast<std::size_t>(layer.height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
     std::size_t count = 0;
     for (std::size_t p = first * static_cast<std::size_t>(layer.width), y = first; y < last; ++y)
       for (int x = 0; x < layer.width; ++x, ++p) {
-        choices[p] = layer.visibility[p].is_hair() ? Choice{} : selector.choose(x, static_cast<int>(y));
+        const bool open = may_choose(static_cast<std::size_t>(x), y) && !layer.visibility[p].is_hair();
+        choices[p] = open ? selector.choose(x, static_cast<int>(y)) : Choice{};
         count += choices[p].neighbor != kNoNeighbor;
       }
     chosen += count;

@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "filter/hair_box.h"
 
 namespace pelage {
 namespace {
@@ -43,32 +44,43 @@ void Matte::resize(int w, int h, bool exact_coverage) {
 }
 
 Vec2 MeanDirection::mean() const {
-  const float length = std::hypot(cos2_, sin2_);
-  if (!(length > 0)) return {};
+  const float square = cos2_ * cos2_ + sin2_ * sin2_;
+  if (!(square > 0)) return {};
+  const float length = std::sqrt(square);
   // Half of the angle, by the half-angle formulas.
   const float c = cos2_ / length, x = std::sqrt(std::max(0.f, (1 + c) / 2)), y = std::sqrt(std::max(0.f, (1 - c) / 2));
   return {x, sin2_ < 0 ? -y : y};
 }
 
 void extend_tangents(Matte& m, int reach) {
+  const HairBox hair = hair_box(m.width, m.height, [&](std::size_t p) { return m.tangent_x[p] != 0 || m.tangent_y[p] != 0; });
+  const int left = std::max(0, hair.left - reach), right = std::min(m.width, hair.right + reach),
+            top = std::max(0, hair.top - reach), bottom = std::min(m.height, hair.bottom + reach);
   const auto width = static_cast<std::size_t>(m.width);
-  Buffer<float> tx(m.tangent_x.size()), ty(m.tangent_y.size());
-  parallel_for(static_cast<std::size_t>(m.height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first; y < last; ++y)
-      for (std::size_t x = 0; x < width; ++x) {
-        const std::size_t p = y * width + x;
-        tx[p] = m.tangent_x[p], ty[p] = m.tangent_y[p];
-        if (tx[p] != 0 || ty[p] != 0) continue;
-        MeanDirection around;
-        const auto r = static_cast<std::size_t>(reach);
-        for (std::size_t j = y - std::min(y, r); j <= std::min(y + r, static_cast<std::size_t>(m.height) - 1); ++j)
-          for (std::size_t i = x - std::min(x, r); i <= std::min(x + r, width - 1); ++i)
-            around.add({m.tangent_x[j * width + i], m.tangent_y[j * width + i]});
-        const Vec2 t = around.mean();
-        tx[p] = t.x, ty[p] = t.y;
+  // Sums over 2·reach + 1 pixels of a row; those over as many rows of them follow.
+  Buffer<Vec2> rows(static_cast<std::size_t>(std::max(0, hair.height())) * width);
+  parallel_for(static_cast<std::size_t>(std::max(0, hair.height())), kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row)
+      for (int x = left; x < right; ++x) {
+        MeanDirection sum;
+        const std::size_t p = (row + static_cast<std::size_t>(hair.top)) * width;
+        for (int i = std::max(hair.left, x - reach); i <= std::min(hair.right - 1, x + reach); ++i)
+          sum.add({m.tangent_x[p + static_cast<std::size_t>(i)], m.tangent_y[p + static_cast<std::size_t>(i)]});
+        rows[row * width + static_cast<std::size_t>(x)] = sum.doubled();
       }
   });
-  m.tangent_x = std::move(tx), m.tangent_y = std::move(ty);
+  parallel_for(static_cast<std::size_t>(std::max(0, bottom - top)), kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    for (int y = top + static_cast<int>(first); y < top + static_cast<int>(last); ++y)
+      for (int x = left; x < right; ++x) {
+        const std::size_t p = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+        if (m.tangent_x[p] != 0 || m.tangent_y[p] != 0) continue;
+        MeanDirection sum;
+        for (int j = std::max(hair.top, y - reach); j <= std::min(hair.bottom - 1, y + reach); ++j)
+          sum.add_doubled(rows[static_cast<std::size_t>(j - hair.top) * width + static_cast<std::size_t>(x)]);
+        const Vec2 t = sum.mean();
+        m.tangent_x[p] = t.x, m.tangent_y[p] = t.y;
+      }
+  });
 }
 
 Image lay_over(const Matte& m, const StrandLayer& layer, float exposure) {

@@ -23,6 +23,9 @@ struct Matte {
 class MeanDirection {
  public:
   void add(Vec2 t, float weight = 1) { cos2_ += weight * (t.x * t.x - t.y * t.y), sin2_ += weight * 2 * t.x * t.y; }
+  /// Sums as they are, of this and of another.
+  Vec2 doubled() const { return {cos2_, sin2_}; }
+  void add_doubled(Vec2 sum) { cos2_ += sum.x, sin2_ += sum.y; }
   /// A unit vector; 0 where nothing was added, or all cancels.
   Vec2 mean() const;
 

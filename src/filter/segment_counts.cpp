@@ -18,6 +18,10 @@ std::size_t first_slot(std::uint32_t key, std::size_t size) {
   return static_cast<std::size_t>(static_cast<std::uint64_t>(key * 2654435769u) * size >> 32);
 }
 
+/// Word and bit of a key in the filter.
+std::size_t filter_word(std::uint32_t key, std::size_t words) { return first_slot(key * 0x9e3779b1u, words); }
+std::uint64_t filter_bit(std::uint32_t key) { return std::uint64_t{1} << (key & 63); }
+
 }  // namespace
 
 SegmentCounts::SegmentCounts(std::size_t slots) : slots_(slots) {
@@ -30,6 +34,7 @@ std::size_t SegmentCounts::used() const {
 }
 
 void SegmentCounts::clear() {
+  filter_.fill(0);
   parallel_for(slots_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     std::fill(slots_.begin() + begin, slots_.begin() + end,
               Slot{.key = kFree, .hit = 0, .filled = 0, .red = 0, .green = 0, .blue = 0});
@@ -41,14 +46,18 @@ bool SegmentCounts::insert(std::uint32_t key) {
   for (std::size_t probe = 0; probe < std::min(kMaxProbes, slots_.size()); ++probe) {
     const std::atomic_ref<std::uint32_t> slot(slots_[i].key);
     std::uint32_t found = slot.load(std::memory_order_relaxed);
-    if (found == kFree && slot.compare_exchange_strong(found, key, std::memory_order_relaxed)) return true;
-    if (found == key) return true;
+    const bool taken = found == kFree && slot.compare_exchange_strong(found, key, std::memory_order_relaxed);
+    if (taken || found == key) {
+      std::atomic_ref(filter_[filter_word(key, kFilterWords)]).fetch_or(filter_bit(key), std::memory_order_relaxed);
+      return true;
+    }
     i = i + 1 < slots_.size() ? i + 1 : 0;
   }
   return false;
 }
 
 SegmentCounts::Slot* SegmentCounts::find(std::uint32_t key) {
+  if (!(filter_[filter_word(key, kFilterWords)] & filter_bit(key))) return nullptr;
   std::size_t i = first_slot(key, slots_.size());
   for (std::size_t probe = 0; probe < std::min(kMaxProbes, slots_.size()); ++probe) {
     if (slots_[i].key == key) return &slots_[i];

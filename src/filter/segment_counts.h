@@ -43,6 +43,10 @@ class SegmentCounts {
   static Vec3 mean_color(const Slot& slot);
 
  private:
+  /// One bit for many keys: clear where none of them was inserted. Fits into a cache, as the slots do not, and most samples
+  /// are of segments that linking has not touched.
+  static constexpr std::size_t kFilterWords = 1 << 14;
+  Buffer<std::uint64_t> filter_{kFilterWords};
   Buffer<Slot> slots_;
 };
 
