@@ -48,7 +48,7 @@ struct Linkable {
     Matte matte = fix_alpha(layer, links, LinkAlpha::kCount, stats);
     for (const Fill& fill : links.fills)
       layer.visibility[fill.pixel] = {}, layer.depth[fill.pixel] = INFINITY, layer.color[fill.pixel] = {};
-    extend_tangents(matte, 2);
+    extend_tangents(matte);
     return filter_anisotropic(matte, kernel_for(matte, scene.settings.link));
   }
 };

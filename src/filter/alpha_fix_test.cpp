@@ -25,8 +25,7 @@ Linked random_links(std::uint32_t seed, int width, int height, int side = 1, std
   Rng rng(5, seed);
   l.layer.width = width, l.layer.height = height, l.layer.side = side;
   const std::size_t n = static_cast<std::size_t>(width * height);
-  l.layer.visibility.resize(n), l.layer.strand.resize(n), l.layer.depth.resize(n), l.layer.color.resize(n),
-      l.layer.behind.resize(n);
+  l.layer.visibility.resize(n), l.layer.depth.resize(n), l.layer.color.resize(n), l.layer.behind.resize(n);
   std::vector<std::uint32_t> hits, empty;
   for (std::size_t p = 0; p < n; ++p) {
     const bool hair = rng.uniform() < 0.4f;
@@ -34,7 +33,7 @@ Linked random_links(std::uint32_t seed, int width, int height, int side = 1, std
     const float angle = 3 * rng.uniform();
     l.layer.visibility[p] =
         hair ? pack_visibility({std::cos(angle), std::sin(angle)}, 0.5f, segment, false) : VisibilitySample();
-    l.layer.strand[p] = 0, l.layer.depth[p] = hair ? 1.f : INFINITY;
+    l.layer.depth[p] = hair ? 1.f : INFINITY;
     l.layer.color[p] = hair ? Vec3(rng.uniform(), 3 * rng.uniform(), 0.1f) : Vec3();
     l.layer.behind[p] = {0.5f, 0.25f, 0.125f, 1};
     (hair ? hits : empty).push_back(static_cast<std::uint32_t>(p));

@@ -225,7 +225,6 @@ Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSet
       layer.visibility[step.pixel] = step.sample;
       layer.depth[step.pixel] = step.depth;
       layer.color[step.pixel] = layer.color[source];
-      layer.strand[step.pixel] = layer.strand[source];
       fills[task].push_back({step.pixel, source});
     }
   });

@@ -60,8 +60,8 @@ StrandLayer empty_layer(int width, int height) {
   StrandLayer layer;
   layer.width = width, layer.height = height;
   const std::size_t n = static_cast<std::size_t>(width * height);
-  layer.visibility.resize(n), layer.strand.resize(n), layer.depth.resize(n), layer.color.resize(n), layer.behind.resize(n);
-  layer.visibility.fill({}), layer.strand.fill(0), layer.depth.fill(INFINITY), layer.color.fill({}), layer.behind.fill({});
+  layer.visibility.resize(n), layer.depth.resize(n), layer.color.resize(n), layer.behind.resize(n);
+  layer.visibility.fill({}), layer.depth.fill(INFINITY), layer.color.fill({}), layer.behind.fill({});
   return layer;
 }
 
@@ -76,7 +76,7 @@ std::size_t hit(StrandLayer& layer, const Polylines& curves, std::uint32_t stran
   float t = 0;
   const std::uint32_t primitive = StrandCurves::primitive_at(curve, s, t);
   layer.visibility[p] = pack_visibility(point.tangent, t, primitive, false);
-  layer.strand[p] = strand, layer.depth[p] = point.depth, layer.color[p] = color;
+  layer.depth[p] = point.depth, layer.color[p] = color;
   return p;
 }
 

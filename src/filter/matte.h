@@ -35,7 +35,8 @@ class MeanDirection {
 
 /// Gives pixels without hair, but with some within `reach` pixels, the mean direction of that: the filter then closes gaps
 /// as it thins what is around them, and hair keeps its energy.
-void extend_tangents(Matte& matte, int reach);
+inline constexpr int kGapReach = 2;  ///< gaps between strands that one sample misses are a few pixels wide
+void extend_tangents(Matte& matte, int reach = kGapReach);
 
 /// The matte over what is behind it, StrandLayer::behind: R, G, B, A, linear, premultiplied, times 2^exposure.
 Image lay_over(const Matte& matte, const StrandLayer& layer, float exposure);

@@ -21,8 +21,6 @@ namespace {
 
 constexpr Vec2 kPixelCenter{0.5f, 0.5f};
 constexpr std::size_t kPixelsPerTask = 1 << 14;
-/// Pixels around hair that the filter may lay hair on: gaps between strands are a few pixels wide.
-constexpr int kGapReach = 2;
 
 /// What is behind the hair of every pixel.
 Buffer<Vec4> behind_hair(const FrameInputs& inputs, const Buffer<float>& opaque_depth, const OpaqueLayer& opaque) {
@@ -39,16 +37,15 @@ Buffer<Vec4> behind_hair(const FrameInputs& inputs, const Buffer<float>& opaque_
 }
 
 /// What the pixels of `keys` show, from the evaluations of shade.
-void spread_samples(const Buffer<PixelKey>& keys, const Radiance& radiance, const Buffer<StrandPlace>& places,
+void spread_samples(const Buffer<PixelKey>& keys, const Radiance& radiance, const Buffer<VisibilitySample>& samples,
                     StrandLayer& layer) {
-  layer.visibility.resize(keys.size()), layer.strand.resize(keys.size());
+  layer.visibility.resize(keys.size());
   layer.depth.resize(keys.size()), layer.color.resize(keys.size());
   parallel_for(keys.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const std::uint32_t i = radiance.index[p];
       const bool hair = i != Radiance::kNone;
-      layer.visibility[p] = hair ? places[i].sample : VisibilitySample();
-      layer.strand[p] = hair ? places[i].strand : 0;
+      layer.visibility[p] = hair ? samples[i] : VisibilitySample();
       layer.depth[p] = hair ? key_depth(keys[p]) : INFINITY;
       layer.color[p] = hair ? radiance.color[i] : Vec3();
     }
@@ -66,7 +63,7 @@ Buffer<float> nearest_of(const StrandLayer& layer) {
 }
 
 std::uint64_t bytes_of(const StrandLayer& l) {
-  return l.visibility.bytes() + l.strand.bytes() + l.depth.bytes() + l.color.bytes() + l.coverage.bytes() + l.behind.bytes() +
+  return l.visibility.bytes() + l.depth.bytes() + l.color.bytes() + l.coverage.bytes() + l.behind.bytes() +
          l.opaque_depth.bytes();
 }
 
@@ -102,13 +99,13 @@ StrandLayer render_strand_layer(const FrameInputs& inputs, int side, bool covera
       return StageWork{segments, area.coverage.bytes()};
     });
   Radiance radiance;
-  Buffer<StrandPlace> places;
+  Buffer<VisibilitySample> samples;
   stages.run("shade", "evaluations", [&](const Progress&) {
-    radiance = shade(inputs.scene, inputs.view, inputs.numbering, gbuffer, inputs.rig, std::array{kPixelCenter}, &places);
-    return StageWork{radiance.color.size(), radiance.color.bytes() + radiance.index.bytes() + places.bytes()};
+    radiance = shade(inputs.scene, inputs.view, inputs.numbering, gbuffer, inputs.rig, std::array{kPixelCenter}, &samples);
+    return StageWork{radiance.color.size(), radiance.color.bytes() + radiance.index.bytes() + samples.bytes()};
   });
   stages.run("filter.visibility", "pixels", [&](const Progress&) {
-    spread_samples(gbuffer.center, radiance, places, layer);
+    spread_samples(gbuffer.center, radiance, samples, layer);
     layer.behind = behind_hair(inputs, gbuffer.opaque_depth, opaque);
     layer.opaque_depth = std::move(gbuffer.opaque_depth);
     return StageWork{pixels, bytes_of(layer)};
@@ -126,15 +123,18 @@ Image link_and_filter(StrandLayer layer, const StrandCurves& curves, const Rende
       return StageWork{pixels, links.fills.capacity() * sizeof(Fill)};
     });
   Matte matte;
+  std::uint64_t overflow = 0;
   stages.run("filter.alpha", "pixels", [&](const Progress&) {
     AlphaStats stats;
     matte = fix_alpha(layer, links, settings.link.alpha, stats);
+    overflow = stats.overflow;
     return StageWork{pixels, 6 * matte.r.bytes()};
   });
+  if (overflow > 0) stages.note("filter.overflow", "fills", {overflow, 0});
   if (nearest) *nearest = nearest_of(layer);
   if (settings.link.filter)
     stages.run("filter.anisotropic", "pixels", [&](const Progress&) {
-      extend_tangents(matte, kGapReach);
+      extend_tangents(matte);
       matte = filter_anisotropic(matte, kernel_for(matte, settings.link));
       return StageWork{pixels, 6 * matte.r.bytes()};
     });

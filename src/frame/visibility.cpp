@@ -23,24 +23,17 @@ SegmentNumbering number_spans(const Scene& scene) {
   return spans;
 }
 
-StrandPlaces::StrandPlaces(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering)
-    : scene_(scene), view_(view), numbering_(numbering), spans_(number_spans(scene)) {
-  std::uint32_t strands = 0;
-  for (const GroomInstance& groom : scene.grooms) {
-    first_strand_.push_back(strands);
-    strands += static_cast<std::uint32_t>(groom.strands->strand_count());
-  }
-}
+VisibilityPacker::VisibilityPacker(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering)
+    : scene_(scene), view_(view), numbering_(numbering), spans_(number_spans(scene)) {}
 
-StrandPlace StrandPlaces::place(const SegmentRef& segment, float t, const StrandSurface& surface) const {
+VisibilitySample VisibilityPacker::sample(const SegmentRef& segment, float t, const StrandSurface& surface) const {
   const Vec3 c = transform_point(view_.world_to_camera, surface.position);
   const Vec2 along = project_direction(view_, c, transform_vector(view_.world_to_camera, surface.tangent));
   const float pixels = length(along), subdivisions = static_cast<float>(numbering_.subdivisions[segment.groom]);
   const std::uint32_t span =
       spans_.groom_base[segment.groom] + scene_.grooms[segment.groom].strands->offsets[segment.strand] + segment.span;
-  return {pack_visibility(pixels > 0 ? along * (1 / pixels) : Vec2(), (static_cast<float>(segment.k) + t) / subdivisions, span,
-                          false),
-          first_strand_[segment.groom] + segment.strand};
+  const float on_span = (static_cast<float>(segment.k) + t) / subdivisions;
+  return pack_visibility(pixels > 0 ? along * (1 / pixels) : Vec2(), on_span, span, false);
 }
 
 }  // namespace pelage

@@ -4,7 +4,6 @@
 #include <pelage/scene.h>
 
 #include <cstdint>
-#include <vector>
 
 #include "core/buffer.h"
 #include "frame/frame.h"
@@ -35,29 +34,22 @@ inline VisibilitySample pack_visibility(Vec2 tangent, float t, std::uint32_t pri
   return {-tangent.y, tangent.x, t, primitive << 2 | (filled ? VisibilitySample::kFilled : 0) | VisibilitySample::kHair};
 }
 
-/// Where on which strand a sample of hair is.
-struct StrandPlace {
-  VisibilitySample sample;
-  std::uint32_t strand = 0;  ///< numbered through all grooms
-};
-
 /// Ids of VisibilitySample::primitive() for a scene: those of its segments, would every span be one. Throws Error where 30 bits
 /// do not name them.
 SegmentNumbering number_spans(const Scene& scene);
 
-/// From segments of a G-buffer to places on strands. Refers to the scene and all else.
-class StrandPlaces {
+/// From segments of a G-buffer to what visibility pixels hold. Refers to the scene and all else.
+class VisibilityPacker {
  public:
-  StrandPlaces(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering);
+  VisibilityPacker(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering);
   /// `surface` is that of the segment at t (frame/segment_lookup.h).
-  StrandPlace place(const SegmentRef& segment, float t, const StrandSurface& surface) const;
+  VisibilitySample sample(const SegmentRef& segment, float t, const StrandSurface& surface) const;
 
  private:
   const Scene& scene_;
   const CameraView& view_;
   const SegmentNumbering& numbering_;
   SegmentNumbering spans_;
-  std::vector<std::uint32_t> first_strand_;  // of each groom
 };
 
 /// One sample of hair a visibility pixel, and what is there without hair. A screen pixel is a square of `side`² visibility
@@ -66,7 +58,6 @@ struct StrandLayer {
   int width = 0, height = 0;            ///< visibility pixels
   int side = 1;                         ///< visibility pixels a side of a screen pixel
   Buffer<VisibilitySample> visibility;  ///< [h·w]
-  Buffer<std::uint32_t> strand;         ///< [h·w] strand of the sample, numbered through all grooms; any where there is none
   Buffer<float> depth;                  ///< [h·w] camera z of the strand, metres; +inf for none
   Buffer<Vec3> color;                   ///< [h·w] its scene-linear radiance; 0 for none
   Buffer<float> coverage;               ///< [h·w] share of the pixel that strands cover, 0…1; or empty where nobody knows

@@ -68,7 +68,7 @@ class SampleEntry {
       : width_(width), f_(fragments), locks_(locks), keys_(keys) {}
 
   /// Fragments since the last group lie in `rect`.
-  void close_group(const PixelRect& rect) {
+  void close_group(const PixelBounds& rect) {
     if (f_.count == begin_) return;
     groups_[count_++] = {rect, f_.count};
     begin_ = f_.count;
@@ -91,12 +91,12 @@ class SampleEntry {
 
  private:
   struct Group {
-    PixelRect rect;
+    PixelBounds rect;
     std::size_t end;
   };
   static constexpr std::size_t kMostGroups = 64, kMostTiles = 32;
 
-  HWY_NOINLINE void enter_group(const PixelRect& rect, std::size_t begin, std::size_t end) {
+  HWY_NOINLINE void enter_group(const PixelBounds& rect, std::size_t begin, std::size_t end) {
     if (TileLocks::count(rect) <= kMostTiles) return locks_.own(rect, [&] { enter_all<kSamples>(f_, begin, end, keys_); });
     // Long or wide segments: others shall not wait for half the image.
     for (std::size_t i = begin; i < end; ++i) {
@@ -163,7 +163,7 @@ struct VisitedRows {
     highest = select(m, max(highest, to), highest);
   }
   /// The pixels of these rows in all columns of the bunch.
-  PixelRect rect(const SegmentLanes& w) const {
+  PixelBounds rect(const SegmentLanes& w) const {
     const Mask any_row = highest >= Float(0.0f);
     const auto least = [&](Float f) {
       return static_cast<int>(hn::GetLane(hn::MinOfLanes(kFloat, select(any_row, f, Float(1.0e9f)).v)));

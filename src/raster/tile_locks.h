@@ -9,7 +9,7 @@
 namespace pelage {
 
 /// Pixels x0 … x1, y0 … y1, ends included.
-struct PixelRect {
+struct PixelBounds {
   int x0, x1, y0, y1;
 };
 
@@ -24,14 +24,14 @@ class TileLocks {
 
   /// Waits for all tiles that `r`, inside the image, meets; work() must not lock any.
   template <class Work>
-  void own(const PixelRect& r, const Work& work) {
+  void own(const PixelBounds& r, const Work& work) {
     for_tiles(r, [](Lock& lock) { lock.acquire(); });
     work();
     for_tiles(r, [](Lock& lock) { lock.release(); });
   }
 
   static std::size_t tile(int pixel) { return static_cast<std::size_t>(pixel) / kSide; }
-  static std::size_t count(const PixelRect& r) { return (tile(r.x1) - tile(r.x0) + 1) * (tile(r.y1) - tile(r.y0) + 1); }
+  static std::size_t count(const PixelBounds& r) { return (tile(r.x1) - tile(r.x0) + 1) * (tile(r.y1) - tile(r.y0) + 1); }
 
  private:
   struct alignas(64) Lock {
@@ -46,7 +46,7 @@ class TileLocks {
 
   // Always in the same order: two threads that want the same tiles cannot wait for each other.
   template <class Visit>
-  void for_tiles(const PixelRect& r, const Visit& visit) {
+  void for_tiles(const PixelBounds& r, const Visit& visit) {
     for (std::size_t y = tile(r.y0); y <= tile(r.y1); ++y)
       for (std::size_t x = tile(r.x0); x <= tile(r.x1); ++x) visit(locks_[y * across_ + x]);
   }

@@ -20,8 +20,8 @@ struct Gather {
   const CameraView& view;
   const SegmentNumbering& numbering;
   std::span<const Vec2> sample_positions;
-  const Buffer<PixelKey>& keys;  ///< of all pixels, as many adjacent ones as there are positions
-  const StrandPlaces* places;    ///< null where they are not asked for
+  const Buffer<PixelKey>& keys;    ///< of all pixels, as many adjacent ones as there are positions
+  const VisibilityPacker* packer;  ///< null where they are not asked for
 };
 
 Vec2 screen_place(const Gather& g, std::uint32_t key) {
@@ -37,7 +37,7 @@ Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
 }
 
 void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, ShadeBatch& batch, std::size_t i,
-                 StrandPlace* place) {
+                 VisibilitySample* visibility) {
   const GroomInstance& groom = g.scene.grooms[segment.groom];
   const Vec2 at = screen_place(g, key);
   const float t = locate_on_segment(g.scene, g.numbering, g.view, segment, at.x, at.y);
@@ -48,7 +48,7 @@ void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, 
   batch.tx[i] = s.tangent.x, batch.ty[i] = s.tangent.y, batch.tz[i] = s.tangent.z;
   batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
   batch.absorb_r[i] = absorption.x, batch.absorb_g[i] = absorption.y, batch.absorb_b[i] = absorption.z;
-  if (place) *place = g.places->place(segment, t, s);
+  if (visibility) *visibility = g.packer->sample(segment, t, s);
 }
 
 /// Copies lane 0 behind the last one, so that whole vectors see valid numbers.
@@ -58,9 +58,9 @@ void pad(ShadeBatch& batch) {
     std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
 }
 
-/// Shades what the keys at `visible` show, at most ShadeBatch::kSize of them, groom by groom. `places` may be null.
+/// Shades what the keys at `visible` show, at most ShadeBatch::kSize of them, groom by groom. `visibility` may be null.
 void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, std::span<const std::uint32_t> visible,
-                 Evaluator evaluator, ShadeBatch& batch, Vec3* color, StrandPlace* places) {
+                 Evaluator evaluator, ShadeBatch& batch, Vec3* color, VisibilitySample* visibility) {
   std::array<SegmentRef, ShadeBatch::kSize> segments;
   std::array<std::uint32_t, ShadeBatch::kSize> pending, left, taken;
   std::size_t pending_count = visible.size();
@@ -78,7 +78,7 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
         left[left_count++] = i;
         continue;
       }
-      gather_lane(g, visible[i], segments[i], batch, batch.count, places ? places + i : nullptr);
+      gather_lane(g, visible[i], segments[i], batch, batch.count, visibility ? visibility + i : nullptr);
       taken[batch.count++] = i;
     }
     pad(batch);
@@ -91,13 +91,13 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
 }  // namespace
 
 Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
-               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<StrandPlace>* places) {
-  return shade_with(evaluate, scene, view, numbering, gbuffer, rig, sample_positions, places);
+               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<VisibilitySample>* visibility) {
+  return shade_with(evaluate, scene, view, numbering, gbuffer, rig, sample_positions, visibility);
 }
 
 Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
                     const GBuffer& gbuffer, const LightRig& rig, std::span<const Vec2> sample_positions,
-                    Buffer<StrandPlace>* places) {
+                    Buffer<VisibilitySample>* visibility) {
   const bool sampled = !gbuffer.sample_keys.empty();
   const Buffer<PixelKey>& keys = sampled ? gbuffer.sample_keys : gbuffer.center;
   const int samples = sampled ? gbuffer.samples : 1;
@@ -107,16 +107,16 @@ Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& v
   radiance.index = std::move(list.index);
   radiance.color.resize(list.first.size());
 
-  std::optional<StrandPlaces> strand_places;
-  if (places) strand_places.emplace(scene, view, numbering), places->resize(list.first.size());
-  const Gather gather{scene, view, numbering, sample_positions, keys, strand_places ? &*strand_places : nullptr};
+  std::optional<VisibilityPacker> packer;
+  if (visibility) packer.emplace(scene, view, numbering), visibility->resize(list.first.size());
+  const Gather gather{scene, view, numbering, sample_positions, keys, packer ? &*packer : nullptr};
   std::vector<ShadeConstants> constants;
   for (const GroomInstance& groom : scene.grooms)
     constants.push_back(shade_constants(groom.material, scene.settings.dual_scattering, rig));
   parallel_for(list.first.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
     ShadeBatch batch;
     shade_block(gather, constants, {list.first.data() + begin, end - begin}, evaluator, batch, radiance.color.data() + begin,
-                places ? places->data() + begin : nullptr);
+                visibility ? visibility->data() + begin : nullptr);
   });
   return radiance;
 }

@@ -24,14 +24,14 @@ using Evaluator = void (*)(const ShadeConstants&, ShadeBatch&);
 /// Runs wide on the active instruction set. Order and bits of `color` do not depend on the number of threads or on the
 /// instruction set. Complexity: O(pixels · samples + evaluations · lights).
 ///
-/// `places`, where given, becomes the place of every evaluation on its strand, in the order of `color`; its t is that on the
+/// `visibility`, where given, becomes the visibility sample of every evaluation, in the order of `color`; its t is that on the
 /// whole span, and throws Error where 30 bits do not number the spans.
 Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
-               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<StrandPlace>* places = nullptr);
+               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<VisibilitySample>* visibility = nullptr);
 
 /// The same with another evaluator: the scalar reference of tests and benchmarks.
 Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
                     const GBuffer& gbuffer, const LightRig& rig, std::span<const Vec2> sample_positions,
-                    Buffer<StrandPlace>* places = nullptr);
+                    Buffer<VisibilitySample>* visibility = nullptr);
 
 }  // namespace pelage
