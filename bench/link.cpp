@@ -38,18 +38,19 @@ struct Linkable {
     const MeshTracer meshes(scene.meshes);
     const LightRig rig = prepare_lights(scene, meshes);
     Stages stages{Progress()};
-    layer = render_strand_layer({scene, meshes, rig, view, numbering}, 1, false, stages);
+    layer = render_strand_layer({scene, meshes, rig, view, numbering}, 1, false, stages).layer;
   }
 
   /// Links, alpha fix, filter; the layer is as before afterwards.
   Matte repair() {
     const Links links = link_strands(layer, GroomCurves(scene, view), scene.settings.link);
+    const AnisotropicKernel kernel = kernel_for(screen_box(layer), scene.settings.link);
     AlphaStats stats;
-    Matte matte = fix_alpha(layer, links, LinkAlpha::kCount, stats);
+    Matte matte = fix_alpha(layer, links, LinkAlpha::kCount, kernel.reach(), stats);
+    extend_tangents(matte, layer);
     for (const Fill& fill : links.fills)
       layer.visibility[fill.pixel] = {}, layer.depth[fill.pixel] = INFINITY, layer.color[fill.pixel] = {};
-    extend_tangents(matte);
-    return filter_anisotropic(matte, kernel_for(matte, scene.settings.link));
+    return filter_anisotropic(matte, kernel);
   }
 };
 
@@ -64,7 +65,10 @@ Workload repair_workload(const std::string& groom, int width, int height) {
     set_thread_count(1);
     const Matte one = input->repair();
     set_thread_count(threads);
-    return std::equal(one.g.begin(), one.g.end(), many.g.begin()) ? "" : "not the bits of one thread";
+    bool same = true;
+    one.hair.for_each(0, static_cast<std::size_t>(one.height),
+                      [&](int x, int y) { same = same && one.at(x, y).g == many.at(x, y).g; });
+    return same && one.hair.count() == many.hair.count() ? "" : "not the bits of one thread";
   };
   return {.check = check, .run = [input] { input->repair(); }, .items = static_cast<double>(hair)};
 }

@@ -17,7 +17,7 @@ struct AlphaStats {
   std::size_t overflow = 0;  ///< fills whose segment found no place in the table: they were taken back
 };
 
-/// The matte of a linked layer, the mean of a screen pixel's visibility pixels.
+/// The matte of a linked layer, with a border of `border` ≥ 0 empty pixels; each pixel the mean of its visibility pixels.
 ///
 /// LinkAlpha::kCount, eq. 8: the M hit and N filled pixels of a linked segment have α = M/(M+N) and C_hair, the mean color of
 /// the M; so the sum of α·C_hair over M ∪ N is that of the colors of M (eq. 10). Pixels of other segments keep their color,
@@ -25,12 +25,13 @@ struct AlphaStats {
 /// LinkAlpha::kCoverage: α is layer.coverage; pixels keep their colors, and what has area, but no sample, none.
 ///
 /// Background is not mixed in (eq. 9): the matte is laid over what is really there, after the filter. Removes fills that
-/// overflow the table from `layer`. Same bits for any number of threads. O(pixels).
-Matte fix_alpha(StrandLayer& layer, const Links& links, LinkAlpha alpha, AlphaStats& stats);
+/// overflow the table from `layer`. Same bits for any number of threads. O(pixels of the layer), most of it clearing the matte.
+Matte fix_alpha(StrandLayer& layer, const Links& links, LinkAlpha alpha, int border, AlphaStats& stats);
 
-/// ⌈1.2·W·H⌉ of the box around the layer's hair, eq. 14; at least 1.
-std::size_t segment_table_size(const StrandLayer& layer);
+/// Slots of the table: ⌈1.2·W·H⌉ of the box around the layer's hair, eq. 14, but no more than twice the segments that there
+/// can be, two walks from a sample each; at least 1.
+std::size_t segment_table_size(const StrandLayer& layer, const Links& links);
 /// The same with a table of another size: for tests of its overflow.
-Matte fix_alpha(StrandLayer& layer, const Links& links, LinkAlpha alpha, std::size_t table_size, AlphaStats& stats);
+Matte fix_alpha(StrandLayer& layer, const Links& links, LinkAlpha alpha, int border, std::size_t table_size, AlphaStats& stats);
 
 }  // namespace pelage

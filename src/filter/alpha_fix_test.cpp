@@ -25,7 +25,7 @@ Linked random_links(std::uint32_t seed, int width, int height, int side = 1, std
   Rng rng(5, seed);
   l.layer.width = width, l.layer.height = height, l.layer.side = side;
   const std::size_t n = static_cast<std::size_t>(width * height);
-  l.layer.visibility.resize(n), l.layer.depth.resize(n), l.layer.color.resize(n), l.layer.behind.resize(n);
+  l.layer.visibility.resize(n), l.layer.depth.resize(n), l.layer.color.resize(n);
   std::vector<std::uint32_t> hits, empty;
   for (std::size_t p = 0; p < n; ++p) {
     const bool hair = rng.uniform() < 0.4f;
@@ -35,7 +35,6 @@ Linked random_links(std::uint32_t seed, int width, int height, int side = 1, std
         hair ? pack_visibility({std::cos(angle), std::sin(angle)}, 0.5f, segment, false) : VisibilitySample();
     l.layer.depth[p] = hair ? 1.f : INFINITY;
     l.layer.color[p] = hair ? Vec3(rng.uniform(), 3 * rng.uniform(), 0.1f) : Vec3();
-    l.layer.behind[p] = {0.5f, 0.25f, 0.125f, 1};
     (hair ? hits : empty).push_back(static_cast<std::uint32_t>(p));
   }
   for (const std::uint32_t p : empty) {
@@ -45,13 +44,22 @@ Linked random_links(std::uint32_t seed, int width, int height, int side = 1, std
     l.layer.color[p] = l.layer.color[source], l.layer.depth[p] = 1;
     l.links.fills.push_back({p, source});
   }
+  l.links.walks = l.links.fills.size();
   return l;
 }
 
-double sum(const Buffer<float>& plane) {
+constexpr int kBorder = 3;
+
+double sum(const Matte& m, float MattePixel::*channel) {
   double s = 0;
-  for (const float v : plane) s += static_cast<double>(v);
+  for (int y = -m.border; y < m.height + m.border; ++y)
+    for (int x = -m.border; x < m.width + m.border; ++x) s += static_cast<double>(m.at(x, y).*channel);
   return s;
+}
+
+const MattePixel& pixel(const Matte& m, std::size_t p) {
+  const auto width = static_cast<std::size_t>(m.width);
+  return m.at(static_cast<int>(p % width), static_cast<int>(p / width));
 }
 
 // Eq. 8 by maps and loops over pixels.
@@ -69,21 +77,21 @@ TEST(AlphaFix, IsHitOverAllOfASegment) {
       ++filled[segment_of_fill[f.pixel]];
     }
     AlphaStats stats;
-    const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, stats);
+    const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, kBorder, stats);
     EXPECT_EQ(stats.overflow, 0u);
     EXPECT_EQ(stats.segments, filled.size());
     for (std::uint32_t p = 0; p < l.layer.visibility.size(); ++p) {
       const VisibilitySample& v = l.layer.visibility[p];
       if (!v.is_hair()) {
-        EXPECT_EQ(matte.alpha[p], 0.f);
+        EXPECT_EQ(pixel(matte, p).alpha, 0.f);
         continue;
       }
       const std::uint32_t segment = v.is_filled() ? segment_of_fill[p] : v.primitive();
       const bool linked = filled.count(segment);
       const float m = static_cast<float>(hit[segment]), n = linked ? static_cast<float>(filled[segment]) : 0;
-      EXPECT_FLOAT_EQ(matte.alpha[p], m / (m + n));
+      EXPECT_FLOAT_EQ(pixel(matte, p).alpha, m / (m + n));
       const Vec3 c = linked ? color[segment] / m : l.layer.color[p];
-      EXPECT_NEAR(matte.g[p], c.y * m / (m + n), 1e-5f);
+      EXPECT_NEAR(pixel(matte, p).g, c.y * m / (m + n), 1e-5f);
     }
   }
 }
@@ -98,12 +106,12 @@ TEST(AlphaFix, KeepsTheEnergyOfTheSamples) {
         if (const VisibilitySample& v = l.layer.visibility[p]; v.is_hair() && !v.is_filled())
           red += static_cast<double>(l.layer.color[p].x), green += static_cast<double>(l.layer.color[p].y), ++hits;
       AlphaStats stats;
-      const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, stats);
+      const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, kBorder, stats);
       EXPECT_EQ(matte.width, 36 / side);
       const double pixels = side * side;
-      EXPECT_NEAR(sum(matte.r) * pixels, red, 1e-4 * red);
-      EXPECT_NEAR(sum(matte.g) * pixels, green, 1e-4 * green);
-      EXPECT_NEAR(sum(matte.alpha) * pixels, hits, 1e-4 * hits);
+      EXPECT_NEAR(sum(matte, &MattePixel::r) * pixels, red, 1e-4 * red);
+      EXPECT_NEAR(sum(matte, &MattePixel::g) * pixels, green, 1e-4 * green);
+      EXPECT_NEAR(sum(matte, &MattePixel::alpha) * pixels, hits, 1e-4 * hits);
     }
 }
 
@@ -113,14 +121,14 @@ TEST(AlphaFix, AFullTableTakesFillsBackAndCountsThem) {
     Linked l = random_links(3, 64, 48, 1, 400);
     const std::size_t fills = l.links.fills.size();
     AlphaStats stats;
-    const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, 8, stats);
+    const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, kBorder, 8, stats);
     EXPECT_EQ(stats.segments, 8u);
     EXPECT_GT(stats.overflow, fills / 2);
     std::size_t filled = 0;
     double hits = 0;
     for (const VisibilitySample& v : l.layer.visibility) filled += v.is_filled(), hits += v.is_hair() && !v.is_filled();
     EXPECT_EQ(filled + stats.overflow, fills);
-    EXPECT_NEAR(sum(matte.alpha), hits, 1e-3 * hits);  // energy does not depend on the table
+    EXPECT_NEAR(sum(matte, &MattePixel::alpha), hits, 1e-3 * hits);  // energy does not depend on the table
     set_thread_count(0);
   }
 }
@@ -131,7 +139,7 @@ TEST(AlphaFix, CoverageIsTheAlpha) {
   l.layer.coverage.resize(400);
   for (float& c : l.layer.coverage) c = rng.uniform();
   AlphaStats stats;
-  const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCoverage, stats);
+  const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCoverage, kBorder, stats);
   for (int y = 0; y < 10; ++y)
     for (int x = 0; x < 10; ++x) {
       float mean = 0, seen = 0;
@@ -141,8 +149,8 @@ TEST(AlphaFix, CoverageIsTheAlpha) {
           seen += l.layer.coverage[static_cast<std::size_t>(p)] / 4;
       }
       const auto out = static_cast<std::size_t>(10 * y + x);
-      EXPECT_NEAR(matte.coverage[out], mean, 1e-6f);
-      EXPECT_NEAR(matte.alpha[out], seen, 1e-6f);
+      EXPECT_NEAR(pixel(matte, out).coverage, mean, 1e-6f);
+      EXPECT_NEAR(pixel(matte, out).alpha, seen, 1e-6f);
     }
 }
 
@@ -151,26 +159,30 @@ TEST(AlphaFix, SameBitsForAnyThreads) {
     set_thread_count(threads);
     Linked l = random_links(7, 200, 150, 1, 3000);
     AlphaStats stats;
-    Matte m = fix_alpha(l.layer, l.links, LinkAlpha::kCount, stats);
+    Matte m = fix_alpha(l.layer, l.links, LinkAlpha::kCount, kBorder, stats);
     set_thread_count(0);
     return m;
   };
   const Matte one = fixed(1);
   for (const int threads : {2, 5}) {
     const Matte many = fixed(threads);
-    for (const auto plane : {&Matte::r, &Matte::g, &Matte::b, &Matte::alpha, &Matte::tangent_x})
-      EXPECT_EQ(std::memcmp((one.*plane).data(), (many.*plane).data(), one.r.size() * sizeof(float)), 0);
+    const std::size_t bytes = one.stride() * static_cast<std::size_t>(one.height + 2 * kBorder) * sizeof(MattePixel);
+    EXPECT_EQ(std::memcmp(&one.at(-kBorder, -kBorder), &many.at(-kBorder, -kBorder), bytes), 0);
   }
 }
 
-TEST(SegmentTable, HasTheSizeOfTheBox) {
+TEST(SegmentTable, HasTheSizeOfTheBoxOrOfTheWalks) {
   StrandLayer layer;
   layer.width = 10, layer.height = 8;
   layer.visibility.resize(80);
   layer.visibility.fill({});
-  EXPECT_EQ(segment_table_size(layer), 1u);
+  Links links;
+  links.walks = 1000;
+  EXPECT_EQ(segment_table_size(layer, links), 1u);
   layer.visibility[2 * 10 + 3] = layer.visibility[6 * 10 + 7] = pack_visibility({1, 0}, 0, 1, false);
-  EXPECT_EQ(segment_table_size(layer), 30u);  // 5 × 5 × 1.2
+  EXPECT_EQ(segment_table_size(layer, links), 30u);  // 5 × 5 × 1.2
+  links.walks = 6;
+  EXPECT_EQ(segment_table_size(layer, links), 12u);
 }
 
 TEST(SegmentCounts, FindsWhatWasInsertedAndNothingElse) {

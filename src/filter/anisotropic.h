@@ -22,14 +22,16 @@ struct AnisotropicKernel {
   float sigma_along = INFINITY, sigma_across = INFINITY;  ///< pixels
 
   static constexpr float kMostRadius = 64;
+  /// Pixels in x and y within which all weights are: what the border of a matte has to be.
+  int reach() const { return static_cast<int>(radius); }
 };
 
-/// The kernel of `settings` for this hair: r = k·√(Bx·By) with the sides of its box, eq. 13, at most kMostRadius.
-AnisotropicKernel kernel_for(const Matte& matte, const LinkSettings& settings);
+/// The kernel of `settings` for hair in this box of screen pixels: r = k·√(Bx·By) with its sides, eq. 13, at most kMostRadius.
+AnisotropicKernel kernel_for(const PixelBox& hair, const LinkSettings& settings);
 
-/// Weighted means (eq. 12) of color and opacity around every pixel that has a tangent, over the pixels that have one; tangents
-/// and coverage are handed on. Wide over the pixels of a row. Same bits for any number of threads and any instruction set.
-/// O(pixels with tangents · r²).
-Matte filter_anisotropic(const Matte& matte, const AnisotropicKernel& kernel);
+/// Weighted means (eq. 12) of color and opacity over the hair around every pixel of m.hair; a pixel without a tangent stays as
+/// it is. Directions and coverage are handed on. m.border ≥ kernel.reach(). Same bits for any number of threads and any
+/// instruction set. O(hair pixels · pixels inside the ellipse).
+Matte filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel);
 
 }  // namespace pelage

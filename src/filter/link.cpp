@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "filter/hair_box.h"
+#include "filter/pixel_mask.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 8;
+constexpr std::size_t kRowsPerTask = PixelMask::kRowsPerTask;
 constexpr float kLongestStep = 1.5f;    // pixels
 constexpr float kShortestStep = 1e-4f;  // of a span: gives up halving where a strand jumps
 constexpr std::uint8_t kNoNeighbor = 0xff;
@@ -32,21 +32,26 @@ struct Grid {
 
 /// The neighbor whose strand fits an empty pixel best, and how well (eq. 5).
 struct Choice {
-  std::uint8_t neighbor = kNoNeighbor;
   float score = 0;
+  std::uint8_t neighbor = kNoNeighbor;
 };
 
 class Selector {
  public:
-  Selector(const StrandLayer& layer, const LinkSettings& settings)
-      : layer_(layer), settings_(settings), grid_{layer.width, layer.height} {}
+  Selector(const StrandLayer& layer, const PixelMask& hair, const LinkSettings& settings)
+      : layer_(layer), hair_(hair), settings_(settings), grid_{layer.width, layer.height} {
+    for (int n = 0; n < 9; ++n) {  // from the neighbor to the pixel
+      const Vec2 offset(static_cast<float>(-neighbor_x(n)), static_cast<float>(-neighbor_y(n)));
+      if (n != 4) axis_[n] = kernel::filter_alignment_axis(offset, settings.sigma);
+    }
+  }
 
   Choice choose(int x, int y) const {
     const float front = settings_.depth_sigma > 0 ? nearest_candidate(x, y) : 0;
     Choice best;
     for (int n = 0; n < 9; ++n) {
       const float score = score_of(x, y, n, front);
-      if (score > settings_.alignment && score > best.score) best = {static_cast<std::uint8_t>(n), score};
+      if (score > settings_.alignment && score > best.score) best = {score, static_cast<std::uint8_t>(n)};
     }
     return best;
   }
@@ -55,26 +60,25 @@ class Selector {
   /// 0 for no candidate.
   float score_of(int x, int y, int n, float front) const {
     const int nx = x + neighbor_x(n), ny = y + neighbor_y(n);
-    if (n == 4 || !grid_.contains(nx, ny)) return 0;
+    if (n == 4 || !hair_.contains(nx, ny)) return 0;
     const std::size_t i = grid_.index(nx, ny);
-    const VisibilitySample& sample = layer_.visibility[i];
-    if (!sample.is_hair()) return 0;
-    const Vec2 offset(static_cast<float>(x - nx), static_cast<float>(y - ny));
-    const float fit = kernel::filter_alignment(offset, sample.tangent(), settings_.sigma);
+    const float fit = std::fabs(dot(axis_[n], layer_.visibility[i].tangent()));
     if (!(settings_.depth_sigma > 0)) return fit;
     return fit * kernel::filter_depth_continuity((layer_.depth[i] - front) / front, settings_.depth_sigma);
   }
   float nearest_candidate(int x, int y) const {
     float nearest = INFINITY;
     for (int n = 0; n < 9; ++n)
-      if (const int nx = x + neighbor_x(n), ny = y + neighbor_y(n); grid_.contains(nx, ny))
+      if (const int nx = x + neighbor_x(n), ny = y + neighbor_y(n); hair_.contains(nx, ny))
         nearest = std::min(nearest, layer_.depth[grid_.index(nx, ny)]);
     return nearest;
   }
 
   const StrandLayer& layer_;
+  const PixelMask& hair_;
   const LinkSettings& settings_;
   Grid grid_;
+  Vec2 axis_[9];
 };
 
 /// A pixel on a walk.
@@ -94,8 +98,8 @@ std::uint64_t order_of(float score, float depth, std::size_t source) {
 
 class Walker {
  public:
-  Walker(const StrandLayer& layer, const StrandCurves& curves)
-      : layer_(layer), curves_(curves), grid_{layer.width, layer.height} {}
+  Walker(const StrandLayer& layer, const PixelMask& hair, const StrandCurves& curves)
+      : layer_(layer), hair_(hair), curves_(curves), grid_{layer.width, layer.height} {}
 
   /// From the sample of pixel `source` toward the tip (sign 1) or the root (−1): adds the empty pixels on the way to `steps`.
   void walk(std::size_t source, float score, float sign, std::vector<Step>& steps) const {
@@ -115,13 +119,14 @@ class Walker {
       step = kernel::filter_next_step(step, pixels);
       if (pixels > kLongestStep && tried > kShortestStep) continue;  // behind a place that is seen end-on: again, shorter
       s = next, last = point;
-      const int x = static_cast<int>(std::floor(point.screen.x)), y = static_cast<int>(std::floor(point.screen.y));
+      const int x = static_cast<int>(std::floor(point.screen.x)) - layer_.left,
+                y = static_cast<int>(std::floor(point.screen.y)) - layer_.top;
       if (!grid_.contains(x, y)) return;
       const std::size_t entered = grid_.index(x, y);
       if (entered == pixel) continue;
       pixel = entered;
       if (pixel == source) continue;
-      if (layer_.visibility[pixel].is_hair()) return;
+      if (hair_.contains(x, y)) return;
       if (!layer_.opaque_depth.empty() && layer_.opaque_depth[pixel] < point.depth) continue;
       float t = 0;
       const std::uint32_t primitive = StrandCurves::primitive_at(curve, s, t);
@@ -131,45 +136,43 @@ class Walker {
   }
 
  private:
-  /// No walk along a strand needs more, unless the strand winds through the picture's pixels without ever meeting a sample.
+  /// No walk along a strand needs more, unless the strand winds through the layer's pixels without ever meeting a sample.
   int most_steps() const { return 4 * (grid_.width + grid_.height); }
 
   const StrandLayer& layer_;
+  const PixelMask& hair_;
   const StrandCurves& curves_;
   Grid grid_;
 };
 
-/// One choice a pixel; kNoNeighbor where hair is, or none fits. Returns how many chose.
-std::size_t choose_all(const StrandLayer& layer, const LinkSettings& settings, Buffer<Choice>& choices) {
-  const Selector selector(layer, settings);
-  const HairBox hair = hair_box(layer.width, layer.height, [&](std::size_t p) { return layer.visibility[p].is_hair(); });
-  const auto may_choose = [&](std::size_t x, std::size_t y) {
-    const int i = static_cast<int>(x), j = static_cast<int>(y);
-    return i >= hair.left - 1 && i <= hair.right && j >= hair.top - 1 && j <= hair.bottom;
-  };
-  std::atomic<std::size_t> chosen{0};
-  parallel_for(static_cast<std::size_t>(layer.height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
-    std::size_t count = 0;
-    for (std::size_t p = first * static_cast<std::size_t>(layer.width), y = first; y < last; ++y)
-      for (int x = 0; x < layer.width; ++x, ++p) {
-        const bool open = may_choose(static_cast<std::size_t>(x), y) && !layer.visibility[p].is_hair();
-        choices[p] = open ? selector.choose(x, static_cast<int>(y)) : Choice{};
-        count += choices[p].neighbor != kNoNeighbor;
-      }
-    chosen += count;
+/// What every empty pixel next to hair takes, if anything.
+struct Choices {
+  PixelMask made;          ///< pixels that have chosen
+  Buffer<Choice> choices;  ///< [h·w], undefined elsewhere
+};
+
+Choices choose_all(const StrandLayer& layer, const PixelMask& hair, const LinkSettings& settings) {
+  const Selector selector(layer, hair, settings);
+  const Grid grid{layer.width, layer.height};
+  Choices all{PixelMask(layer.width, layer.height), Buffer<Choice>(layer.visibility.size())};
+  hair.grown(1).without(hair).parallel_for_each([&](int x, int y) {
+    const Choice choice = selector.choose(x, y);
+    if (choice.neighbor == kNoNeighbor) return;
+    all.choices[grid.index(x, y)] = choice;
+    all.made.add(x, y);
   });
-  return chosen;
+  return all;
 }
 
 /// The best score of the empty pixels that chose (x, y), by whether they lie toward the strand's root or its tip; 0 for none.
-void scores_of_source(const StrandLayer& layer, const Buffer<Choice>& choices, int x, int y, float (&score)[2]) {
+void scores_of_source(const StrandLayer& layer, const Choices& all, int x, int y, float (&score)[2]) {
   const Grid grid{layer.width, layer.height};
   const Vec2 tangent = layer.visibility[grid.index(x, y)].tangent();
   score[0] = score[1] = 0;
   for (int n = 0; n < 9; ++n) {
     const int ex = x + neighbor_x(n), ey = y + neighbor_y(n);
-    if (n == 4 || !grid.contains(ex, ey)) continue;
-    const Choice& choice = choices[grid.index(ex, ey)];
+    if (!all.made.contains(ex, ey)) continue;
+    const Choice& choice = all.choices[grid.index(ex, ey)];
     if (choice.neighbor != 8 - n) continue;  // the empty pixel sees its source on the other side
     const Vec2 offset(static_cast<float>(neighbor_x(n)), static_cast<float>(neighbor_y(n)));
     float& best = score[dot(offset, tangent) > 0];
@@ -186,33 +189,44 @@ void atomic_least(std::uint64_t& value, std::uint64_t other) {
 
 }  // namespace
 
+PixelMask hair_pixels(const StrandLayer& layer) {
+  return {layer.width, layer.height, [&](std::size_t p) { return layer.visibility[p].is_hair(); }};
+}
+
+PixelBox screen_box(const StrandLayer& layer) {
+  const PixelBox box = hair_pixels(layer).box();
+  const auto up = [&](int x) { return (x + layer.side - 1) / layer.side; };
+  return {box.left / layer.side, up(box.right), box.top / layer.side, up(box.bottom)};
+}
+
 Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSettings& settings) {
   Links links;
-  const std::size_t pixels = layer.visibility.size(), width = static_cast<std::size_t>(layer.width);
-  Buffer<Choice> choices(pixels);
-  links.candidates = choose_all(layer, settings, choices);
+  const Grid grid{layer.width, layer.height};
+  const PixelMask hair = hair_pixels(layer);
+  const Choices all = choose_all(layer, hair, settings);
+  links.candidates = all.made.count();
 
   // All walks; every pixel learns which of them is the best.
   const std::size_t rows = static_cast<std::size_t>(layer.height), tasks = (rows + kRowsPerTask - 1) / kRowsPerTask;
   std::vector<std::vector<Step>> steps(tasks);
-  Buffer<std::uint64_t> best(pixels);
-  parallel_for(pixels, 1 << 16, [&](std::size_t begin, std::size_t end) {
+  Buffer<std::uint64_t> best(layer.visibility.size());
+  parallel_for(best.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     std::fill(best.begin() + begin, best.begin() + end, ~std::uint64_t{0});
   });
-  const Walker walker(layer, curves);
+  const PixelMask sources = all.made.grown(1).intersected(hair);
+  const Walker walker(layer, hair, curves);
   std::atomic<std::size_t> walks{0};
   parallel_for(rows, kRowsPerTask, [&](std::size_t first, std::size_t last) {
     std::vector<Step>& mine = steps[first / kRowsPerTask];
-    for (std::size_t y = first; y < last; ++y)
-      for (std::size_t x = 0; x < width; ++x) {
-        const std::size_t p = y * width + x;
-        if (!layer.visibility[p].is_hair()) continue;
-        float score[2];
-        scores_of_source(layer, choices, static_cast<int>(x), static_cast<int>(y), score);
-        for (int tipward = 0; tipward < 2; ++tipward)
-          if (score[tipward] > 0) walker.walk(p, score[tipward], tipward ? 1.f : -1.f, mine), ++walks;
-      }
+    std::size_t count = 0;
+    sources.for_each(first, last, [&](int x, int y) {
+      float score[2];
+      scores_of_source(layer, all, x, y, score);
+      for (int tipward = 0; tipward < 2; ++tipward)
+        if (score[tipward] > 0) walker.walk(grid.index(x, y), score[tipward], tipward ? 1.f : -1.f, mine), ++count;
+    });
     for (const Step& step : mine) atomic_least(best[step.pixel], step.order);
+    walks += count;
   });
   links.walks = walks;
 
@@ -229,7 +243,6 @@ Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSet
     }
   });
   for (const auto& part : fills) links.fills.insert(links.fills.end(), part.begin(), part.end());
-  std::sort(links.fills.begin(), links.fills.end(), [](const Fill& a, const Fill& b) { return a.pixel < b.pixel; });
   return links;
 }
 

@@ -60,19 +60,23 @@ StrandLayer empty_layer(int width, int height) {
   StrandLayer layer;
   layer.width = width, layer.height = height;
   const std::size_t n = static_cast<std::size_t>(width * height);
-  layer.visibility.resize(n), layer.depth.resize(n), layer.color.resize(n), layer.behind.resize(n);
-  layer.visibility.fill({}), layer.depth.fill(INFINITY), layer.color.fill({}), layer.behind.fill({});
+  layer.visibility.resize(n), layer.depth.resize(n), layer.color.resize(n);
+  layer.visibility.fill({}), layer.depth.fill(INFINITY), layer.color.fill({});
   return layer;
 }
 
 std::size_t at(const StrandLayer& layer, int x, int y) { return static_cast<std::size_t>(y * layer.width + x); }
+/// Of the picture's pixel that holds a place.
+std::size_t at(const StrandLayer& layer, Vec2 screen) {
+  return at(layer, static_cast<int>(screen.x) - layer.left, static_cast<int>(screen.y) - layer.top);
+}
 
 /// Enters a sample of strand `strand` of `curves` at parameter s into the pixel where it is.
 std::size_t hit(StrandLayer& layer, const Polylines& curves, std::uint32_t strand, float s, Vec3 color = {1, 0.5f, 0.25f}) {
   const StrandCurve curve = curves.curve_of(curves.first(strand));
   CurvePoint point;
   EXPECT_TRUE(curves.at(curve, s, point));
-  const std::size_t p = at(layer, static_cast<int>(point.screen.x), static_cast<int>(point.screen.y));
+  const std::size_t p = at(layer, point.screen);
   float t = 0;
   const std::uint32_t primitive = StrandCurves::primitive_at(curve, s, t);
   layer.visibility[p] = pack_visibility(point.tangent, t, primitive, false);
@@ -144,6 +148,22 @@ TEST(Link, StopsAtOtherSamplesAndAtTheBorder) {
   hit(layer, curves, 0, 7.5f / 23), hit(layer, curves, 1, 0.5f);
   link_strands(layer, curves, {});
   EXPECT_EQ(picture(layer), "........#...\n........#...\n####o###o...\n........#...\n........#...\n");
+}
+
+// A layer may be a part of the picture: strands stay where they are.
+TEST(Link, FillsTheSameInAPartOfThePicture) {
+  const Polylines curves({{{{10.5f, 21.5f}, {19.5f, 22.5f}}, 2}, {{{14.5f, 20.5f}, {14.5f, 24.5f}}, 1}});
+  StrandLayer whole = empty_layer(40, 30), part = empty_layer(14, 7);
+  part.left = 8, part.top = 20;
+  for (StrandLayer* layer : {&whole, &part}) {
+    hit(*layer, curves, 0, 0.2f), hit(*layer, curves, 0, 0.8f), hit(*layer, curves, 1, 0.6f);
+    EXPECT_GT(link_strands(*layer, curves, {}).fills.size(), 8u);
+  }
+  for (int y = 0; y < part.height; ++y)
+    for (int x = 0; x < part.width; ++x) {
+      const VisibilitySample &a = part.visibility[at(part, x, y)], &b = whole.visibility[at(whole, x + 8, y + 20)];
+      EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0) << x << " " << y;
+    }
 }
 
 TEST(Link, StaysBehindTheOpaqueScene) {

@@ -2,45 +2,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "filter/hair_box.h"
 
 namespace pelage {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 8;
 
+/// Calls f(p) for the visibility pixels p, of a grid that is `stride` wide, of screen pixel (x, y).
+template <class F>
+void for_each_sample(int side, int stride, int x, int y, const F& f) {
+  for (int j = y * side; j < (y + 1) * side; ++j)
+    for (int i = x * side; i < (x + 1) * side; ++i)
+      f(static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i));
+}
+
+/// Camera z of the nearest hair of screen pixel (x, y); +inf for none.
+float nearest_hair(const StrandLayer& layer, int x, int y) {
+  float nearest = std::numeric_limits<float>::infinity();
+  for_each_sample(layer.side, layer.width, x, y, [&](std::size_t p) { nearest = std::min(nearest, layer.depth[p]); });
+  return nearest;
+}
+
+/// How far one can see through screen pixel (x, y) past the opaque scene.
+float farthest_opaque(const StrandLayer& layer, int x, int y) {
+  if (layer.opaque_depth.empty()) return std::numeric_limits<float>::infinity();
+  float farthest = 0;
+  for_each_sample(layer.side, layer.width, x, y, [&](std::size_t p) { farthest = std::max(farthest, layer.opaque_depth[p]); });
+  return farthest;
+}
+
+void add_scaled(Vec4& sum, Vec4 v, float weight) {
+  sum.x += weight * v.x, sum.y += weight * v.y, sum.z += weight * v.z, sum.w += weight * v.w;
+}
+
 /// What is seen through the hair of screen pixel (x, y): the mean of what is behind its visibility pixels, of those that no
 /// sample of hair hides where there are such.
-Vec4 seen_behind(const StrandLayer& layer, std::size_t x, std::size_t y) {
-  const auto side = static_cast<std::size_t>(layer.side), stride = static_cast<std::size_t>(layer.width);
-  if (side == 1) return layer.behind[y * stride + x];
+Vec4 seen_behind(const StrandLayer& layer, const Behind& behind, int x, int y) {
+  if (layer.side == 1)
+    return behind.color[static_cast<std::size_t>(y) * static_cast<std::size_t>(behind.width) + static_cast<std::size_t>(x)];
   Vec4 open, all;
   float count = 0;
-  const auto add = [](Vec4& sum, Vec4 v, float weight) {
-    sum.x += weight * v.x, sum.y += weight * v.y, sum.z += weight * v.z, sum.w += weight * v.w;
-  };
-  for (std::size_t s = 0; s < side * side; ++s) {
-    const std::size_t p = (y * side + s / side) * stride + x * side + s % side;
-    const VisibilitySample& v = layer.visibility[p];
-    add(all, layer.behind[p], 1);
-    if (!v.is_hair() || v.is_filled()) add(open, layer.behind[p], 1), count += 1;
-  }
+  for (int j = y * layer.side; j < (y + 1) * layer.side; ++j)
+    for (int i = x * layer.side; i < (x + 1) * layer.side; ++i) {
+      const auto at = [](int u, int v, int width) {
+        return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
+      };
+      const Vec4 color = behind.color[at(i, j, behind.width)];
+      add_scaled(all, color, 1);
+      const int u = i - layer.left, v = j - layer.top;
+      const bool inside = u >= 0 && v >= 0 && u < layer.width && v < layer.height;
+      const VisibilitySample sample = inside ? layer.visibility[at(u, v, layer.width)] : VisibilitySample();
+      if (!sample.is_hair() || sample.is_filled()) add_scaled(open, color, 1), count += 1;
+    }
   Vec4 mean;
-  if (count > 0) add(mean, open, 1 / count);
-  else add(mean, all, 1 / static_cast<float>(side * side));
+  if (count > 0) add_scaled(mean, open, 1 / count);
+  else add_scaled(mean, all, 1 / static_cast<float>(layer.side * layer.side));
   return mean;
 }
 
 }  // namespace
 
-void Matte::resize(int w, int h, bool exact_coverage) {
-  width = w, height = h;
-  const std::size_t n = static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
-  for (Buffer<float>* plane : {&r, &g, &b, &alpha, &tangent_x, &tangent_y}) plane->resize(n);
-  if (exact_coverage) coverage.resize(n);
+Matte::Matte(int w, int h, int b)
+    : width(w), height(h), border(b), hair(w, h), pixels_(stride() * static_cast<std::size_t>(h + 2 * b)) {}
+
+void Matte::clear() {
+  parallel_for(pixels_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    std::fill(pixels_.begin() + begin, pixels_.begin() + end, MattePixel{});
+  });
 }
 
 Vec2 MeanDirection::mean() const {
@@ -52,55 +84,49 @@ Vec2 MeanDirection::mean() const {
   return {x, sin2_ < 0 ? -y : y};
 }
 
-void extend_tangents(Matte& m, int reach) {
-  const HairBox hair = hair_box(m.width, m.height, [&](std::size_t p) { return m.tangent_x[p] != 0 || m.tangent_y[p] != 0; });
-  const int left = std::max(0, hair.left - reach), right = std::min(m.width, hair.right + reach),
-            top = std::max(0, hair.top - reach), bottom = std::min(m.height, hair.bottom + reach);
-  const auto width = static_cast<std::size_t>(m.width);
-  // Sums over 2·reach + 1 pixels of a row; those over as many rows of them follow.
-  Buffer<Vec2> rows(static_cast<std::size_t>(std::max(0, hair.height())) * width);
-  parallel_for(static_cast<std::size_t>(std::max(0, hair.height())), kRowsPerTask, [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row)
-      for (int x = left; x < right; ++x) {
-        MeanDirection sum;
-        const std::size_t p = (row + static_cast<std::size_t>(hair.top)) * width;
-        for (int i = std::max(hair.left, x - reach); i <= std::min(hair.right - 1, x + reach); ++i)
-          sum.add({m.tangent_x[p + static_cast<std::size_t>(i)], m.tangent_y[p + static_cast<std::size_t>(i)]});
-        rows[row * width + static_cast<std::size_t>(x)] = sum.doubled();
-      }
+void extend_tangents(Matte& m, const StrandLayer& layer, int reach) {
+  PELAGE_CHECK_EQ(m.width * layer.side, layer.width);
+  PixelMask gaps(m.width, m.height);
+  // Tangents of gaps are written where none is read: hair is left as it is until all are known.
+  m.hair.grown(reach).without(m.hair).parallel_for_each([&](int x, int y) {
+    MeanDirection sum;
+    float nearest = std::numeric_limits<float>::infinity();
+    for (int j = std::max(0, y - reach); j <= std::min(m.height - 1, y + reach); ++j)
+      for (int i = std::max(0, x - reach); i <= std::min(m.width - 1, x + reach); ++i)
+        if (m.hair.contains(i, j)) {
+          sum.add(m.at(i, j).tangent());
+          if (!layer.opaque_depth.empty()) nearest = std::min(nearest, nearest_hair(layer, i, j));
+        }
+    const Vec2 tangent = sum.mean();
+    if (tangent == Vec2() || farthest_opaque(layer, x, y) < nearest) return;
+    m.at(x, y).lie(tangent);
+    gaps.add(x, y);
   });
-  parallel_for(static_cast<std::size_t>(std::max(0, bottom - top)), kRowsPerTask, [&](std::size_t first, std::size_t last) {
-    for (int y = top + static_cast<int>(first); y < top + static_cast<int>(last); ++y)
-      for (int x = left; x < right; ++x) {
-        const std::size_t p = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-        if (m.tangent_x[p] != 0 || m.tangent_y[p] != 0) continue;
-        MeanDirection sum;
-        for (int j = std::max(hair.top, y - reach); j <= std::min(hair.bottom - 1, y + reach); ++j)
-          sum.add_doubled(rows[static_cast<std::size_t>(j - hair.top) * width + static_cast<std::size_t>(x)]);
-        const Vec2 t = sum.mean();
-        m.tangent_x[p] = t.x, m.tangent_y[p] = t.y;
-      }
-  });
+  gaps.for_each(0, static_cast<std::size_t>(m.height), [&](int x, int y) { m.hair.add(x, y); });
 }
 
-Image lay_over(const Matte& m, const StrandLayer& layer, float exposure) {
+Image lay_over(const Matte& m, const StrandLayer& layer, const Behind& behind, float exposure) {
   PELAGE_CHECK_EQ(m.width * layer.side, layer.width);
-  PELAGE_CHECK_EQ(m.height * layer.side, layer.height);
-  Image image(m.width, m.height, {"R", "G", "B", "A"});
+  PELAGE_CHECK_EQ(m.left * layer.side, layer.left);
+  const int width = behind.width / layer.side, height = behind.height / layer.side;
+  Image image(width, height, {"R", "G", "B", "A"});
   const float light = std::exp2(exposure);
-  const auto width = static_cast<std::size_t>(m.width);
-  parallel_for(static_cast<std::size_t>(m.height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first * width; p < last * width; ++p) {
-      const Vec4 back = seen_behind(layer, p % width, p / width);
-      // Where the area is known, the filter has only had to find its color.
-      const bool exact = !m.coverage.empty() && m.alpha[p] > 0;
-      const float alpha = exact ? m.coverage[p] : m.alpha[p], scale = exact ? alpha / m.alpha[p] : 1, through = 1 - alpha;
-      float* out = image.pixels.data() + 4 * p;
-      out[0] = (m.r[p] * scale + back.x * through) * light;
-      out[1] = (m.g[p] * scale + back.y * through) * light;
-      out[2] = (m.b[p] * scale + back.z * through) * light;
-      out[3] = alpha + back.w * through;
-    }
+  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y)
+      for (int x = 0; x < width; ++x) {
+        const Vec4 back = seen_behind(layer, behind, x, y);
+        const int i = x - m.left, j = y - m.top;
+        const MattePixel hair = m.hair.contains(i, j) ? m.at(i, j) : MattePixel();
+        // Where the area is known, the filter has only had to find its color.
+        const bool exact = m.exact_coverage && hair.alpha > 0;
+        const float alpha = exact ? hair.coverage : hair.alpha, scale = exact ? alpha / hair.alpha : 1, through = 1 - alpha;
+        float* out = image.pixels.data() +
+                     4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+        out[0] = (hair.r * scale + back.x * through) * light;
+        out[1] = (hair.g * scale + back.y * through) * light;
+        out[2] = (hair.b * scale + back.z * through) * light;
+        out[3] = alpha + back.w * through;
+      }
   });
   return image;
 }

@@ -38,7 +38,9 @@ class SegmentCounts {
   std::size_t used() const;
 
   static void add_hit(Slot& slot, Vec3 color);
-  static void add_filled(Slot& slot) { std::atomic_ref(slot.filled).fetch_add(1, std::memory_order_relaxed); }
+  static void add_filled(Slot& slot, std::uint32_t pixels) {
+    std::atomic_ref(slot.filled).fetch_add(pixels, std::memory_order_relaxed);
+  }
   /// Mean color of the hit pixels; `slot.hit` > 0.
   static Vec3 mean_color(const Slot& slot);
 

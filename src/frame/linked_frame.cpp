@@ -11,6 +11,7 @@
 #include "filter/anisotropic.h"
 #include "filter/link.h"
 #include "filter/matte.h"
+#include "filter/pixel_mask.h"
 #include "raster/keys.h"
 #include "raster/opaque.h"
 #include "raster/raster.h"
@@ -23,56 +24,83 @@ constexpr Vec2 kPixelCenter{0.5f, 0.5f};
 constexpr std::size_t kPixelsPerTask = 1 << 14;
 
 /// What is behind the hair of every pixel.
-Buffer<Vec4> behind_hair(const FrameInputs& inputs, const Buffer<float>& opaque_depth, const OpaqueLayer& opaque) {
+Behind behind_hair(const FrameInputs& inputs, Buffer<float> opaque_depth, const OpaqueLayer& opaque) {
   const Backdrop backdrop = make_backdrop(inputs.scene, inputs.view);
-  Buffer<Vec4> behind(static_cast<std::size_t>(inputs.view.width) * static_cast<std::size_t>(inputs.view.height));
-  parallel_for(behind.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
+  Behind behind{inputs.view.width, inputs.view.height, {}, std::move(opaque_depth)};
+  behind.color.resize(static_cast<std::size_t>(behind.width) * static_cast<std::size_t>(behind.height));
+  parallel_for(behind.color.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      const bool mesh = !opaque_depth.empty() && opaque_depth[p] < INFINITY;
+      const bool mesh = !behind.depth.empty() && behind.depth[p] < INFINITY;
       const Vec3 c = mesh ? opaque_color(opaque, p) : backdrop.pixels.empty() ? backdrop.color : backdrop.pixels[p];
-      behind[p] = {c.x, c.y, c.z, mesh ? 1.f : backdrop.alpha};
+      behind.color[p] = {c.x, c.y, c.z, mesh ? 1.f : backdrop.alpha};
     }
   });
   return behind;
 }
 
-/// What the pixels of `keys` show, from the evaluations of shade.
-void spread_samples(const Buffer<PixelKey>& keys, const Radiance& radiance, const Buffer<VisibilitySample>& samples,
+/// Sets the place of the layer: around all hair, whole screen pixels.
+void place_layer(const Radiance& radiance, const CameraView& view, StrandLayer& layer) {
+  const PixelMask hair(view.width, view.height, [&](std::size_t p) { return radiance.index[p] != Radiance::kNone; });
+  const PixelBox box = hair.box();
+  const int margin = kLayerMargin * layer.side;
+  const auto down = [&](int x) { return std::max(0, x - margin) / layer.side * layer.side; };
+  const auto up = [&](int x, int end) { return std::min(end, (x + margin + layer.side - 1) / layer.side * layer.side); };
+  layer.left = down(box.left), layer.top = down(box.top);
+  layer.width = up(box.right, view.width) - layer.left, layer.height = up(box.bottom, view.height) - layer.top;
+}
+
+/// What the layer's pixels show, from the evaluations of shade; `depth` of the opaque scene and `coverage` are those of the
+/// whole picture, or empty.
+void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radiance& radiance,
+                    const Buffer<VisibilitySample>& samples, const Buffer<float>& depth, const Buffer<float>& coverage,
                     StrandLayer& layer) {
-  layer.visibility.resize(keys.size());
-  layer.depth.resize(keys.size()), layer.color.resize(keys.size());
-  parallel_for(keys.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const std::uint32_t i = radiance.index[p];
-      const bool hair = i != Radiance::kNone;
-      layer.visibility[p] = hair ? samples[i] : VisibilitySample();
-      layer.depth[p] = hair ? key_depth(keys[p]) : INFINITY;
-      layer.color[p] = hair ? radiance.color[i] : Vec3();
+  const std::size_t width = static_cast<std::size_t>(layer.width), pixels = width * static_cast<std::size_t>(layer.height);
+  layer.visibility.resize(pixels), layer.depth.resize(pixels), layer.color.resize(pixels);
+  if (!depth.empty()) layer.opaque_depth.resize(pixels);
+  if (!coverage.empty()) layer.coverage.resize(pixels);
+  parallel_for(static_cast<std::size_t>(layer.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    for (std::size_t y = first, p = first * width; y < last; ++y) {
+      const std::size_t row = (y + static_cast<std::size_t>(layer.top)) * static_cast<std::size_t>(picture_width) +
+                              static_cast<std::size_t>(layer.left);
+      for (std::size_t q = row; q < row + width; ++q, ++p) {
+        const std::uint32_t i = radiance.index[q];
+        const bool hair = i != Radiance::kNone;
+        layer.visibility[p] = hair ? samples[i] : VisibilitySample();
+        layer.depth[p] = hair ? key_depth(keys[q]) : INFINITY;
+        layer.color[p] = hair ? radiance.color[i] : Vec3();
+        if (!depth.empty()) layer.opaque_depth[p] = depth[q];
+        if (!coverage.empty()) layer.coverage[p] = coverage[q];
+      }
     }
   });
 }
 
-Buffer<float> nearest_of(const StrandLayer& layer) {
-  const auto side = static_cast<std::size_t>(layer.side), stride = static_cast<std::size_t>(layer.width), width = stride / side;
-  Buffer<float> nearest(layer.depth.size() / (side * side));
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    const std::size_t p = i / width * side * stride + i % width * side;
-    nearest[i] = std::min(layer.depth[p], layer.opaque_depth.empty() ? INFINITY : layer.opaque_depth[p]);
-  }
+Buffer<float> nearest_of(const StrandLayer& layer, const Behind& behind) {
+  const int side = layer.side, width = behind.width / side, height = behind.height / side;
+  Buffer<float> nearest(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const auto at = [](int i, int j, int stride) {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i);
+      };
+      const int i = x * side - layer.left, j = y * side - layer.top;
+      const bool inside = i >= 0 && j >= 0 && i < layer.width && j < layer.height;
+      nearest[at(x, y, width)] = std::min(inside ? layer.depth[at(i, j, layer.width)] : INFINITY,
+                                          behind.depth.empty() ? INFINITY : behind.depth[at(x * side, y * side, behind.width)]);
+    }
   return nearest;
 }
 
-std::uint64_t bytes_of(const StrandLayer& l) {
-  return l.visibility.bytes() + l.depth.bytes() + l.color.bytes() + l.coverage.bytes() + l.behind.bytes() +
-         l.opaque_depth.bytes();
+std::uint64_t bytes_of(const LinkInput& in) {
+  const StrandLayer& l = in.layer;
+  return l.visibility.bytes() + l.depth.bytes() + l.color.bytes() + l.coverage.bytes() + l.opaque_depth.bytes() +
+         in.behind.color.bytes() + in.behind.depth.bytes();
 }
 
 }  // namespace
 
-StrandLayer render_strand_layer(const FrameInputs& inputs, int side, bool coverage, Stages& stages) {
-  StrandLayer layer;
-  layer.width = inputs.view.width, layer.height = inputs.view.height, layer.side = side;
-  const std::uint64_t pixels = static_cast<std::uint64_t>(layer.width) * static_cast<std::uint64_t>(layer.height);
+LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage, Stages& stages) {
+  const std::uint64_t pixels = static_cast<std::uint64_t>(inputs.view.width) * static_cast<std::uint64_t>(inputs.view.height);
   OpaqueLayer opaque;
   if (!inputs.meshes.empty())
     stages.run("opaque", "samples", [&](const Progress&) {
@@ -85,15 +113,16 @@ StrandLayer render_strand_layer(const FrameInputs& inputs, int side, bool covera
     const std::uint64_t segments = raster_strands(inputs.scene, inputs.view, inputs.numbering, {}, gbuffer, progress);
     return StageWork{segments, gbuffer.center.bytes()};
   });
+  Buffer<float> covered;
   if (coverage)
     stages.run("raster.coverage", "segments", [&](const Progress& progress) {
       GBuffer area;
       std::swap(area.opaque_depth, gbuffer.opaque_depth);
       const std::uint64_t segments =
           raster_strands(inputs.scene, inputs.view, inputs.numbering, {.center = false, .coverage = true}, area, progress);
-      layer.coverage.resize(area.coverage.size());
-      parallel_for(layer.coverage.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) layer.coverage[p] = analytic_coverage(area, p);
+      covered.resize(area.coverage.size());
+      parallel_for(covered.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) covered[p] = analytic_coverage(area, p);
       });
       std::swap(area.opaque_depth, gbuffer.opaque_depth);
       return StageWork{segments, area.coverage.bytes()};
@@ -104,17 +133,20 @@ StrandLayer render_strand_layer(const FrameInputs& inputs, int side, bool covera
     radiance = shade(inputs.scene, inputs.view, inputs.numbering, gbuffer, inputs.rig, std::array{kPixelCenter}, &samples);
     return StageWork{radiance.color.size(), radiance.color.bytes() + radiance.index.bytes() + samples.bytes()};
   });
+  LinkInput input;
   stages.run("filter.visibility", "pixels", [&](const Progress&) {
-    spread_samples(gbuffer.center, radiance, samples, layer);
-    layer.behind = behind_hair(inputs, gbuffer.opaque_depth, opaque);
-    layer.opaque_depth = std::move(gbuffer.opaque_depth);
-    return StageWork{pixels, bytes_of(layer)};
+    input.layer.side = side;
+    place_layer(radiance, inputs.view, input.layer);
+    spread_samples(gbuffer.center, inputs.view.width, radiance, samples, gbuffer.opaque_depth, covered, input.layer);
+    input.behind = behind_hair(inputs, std::move(gbuffer.opaque_depth), opaque);
+    return StageWork{pixels, bytes_of(input)};
   });
-  return layer;
+  return input;
 }
 
-Image link_and_filter(StrandLayer layer, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
+Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
                       Buffer<float>* nearest) {
+  StrandLayer& layer = input.layer;
   const std::uint64_t pixels = layer.visibility.size();
   Links links;
   if (settings.link.link)
@@ -123,25 +155,25 @@ Image link_and_filter(StrandLayer layer, const StrandCurves& curves, const Rende
       return StageWork{pixels, links.fills.capacity() * sizeof(Fill)};
     });
   Matte matte;
-  std::uint64_t overflow = 0;
+  AlphaStats stats;
+  AnisotropicKernel kernel;
   stages.run("filter.alpha", "pixels", [&](const Progress&) {
-    AlphaStats stats;
-    matte = fix_alpha(layer, links, settings.link.alpha, stats);
-    overflow = stats.overflow;
-    return StageWork{pixels, 6 * matte.r.bytes()};
+    kernel = kernel_for(screen_box(layer), settings.link);
+    matte = fix_alpha(layer, links, settings.link.alpha, kernel.reach(), stats);
+    return StageWork{pixels, matte.bytes()};
   });
-  if (overflow > 0) stages.note("filter.overflow", "fills", {overflow, 0});
-  if (nearest) *nearest = nearest_of(layer);
+  if (stats.overflow > 0) stages.note("filter.overflow", "fills", {stats.overflow, 0});
+  if (nearest) *nearest = nearest_of(layer, input.behind);
   if (settings.link.filter)
     stages.run("filter.anisotropic", "pixels", [&](const Progress&) {
-      extend_tangents(matte);
-      matte = filter_anisotropic(matte, kernel_for(matte, settings.link));
-      return StageWork{pixels, 6 * matte.r.bytes()};
+      extend_tangents(matte, layer);
+      matte = filter_anisotropic(matte, kernel);
+      return StageWork{pixels, matte.bytes()};
     });
   Image linear;
   stages.run("composite", "pixels", [&](const Progress&) {
-    linear = lay_over(matte, layer, settings.exposure);
-    return StageWork{pixels, linear.pixels.size() * sizeof(float)};
+    linear = lay_over(matte, layer, input.behind, settings.exposure);
+    return StageWork{linear.pixels.size() / 4, linear.pixels.size() * sizeof(float)};
   });
   return linear;
 }

@@ -10,13 +10,20 @@ namespace pelage {
 
 class StrandCurves;
 
+/// What linking works on.
+struct LinkInput {
+  StrandLayer layer;
+  Behind behind;
+};
+
 /// One sample in the middle of each pixel of inputs.view, which has `side`² pixels for one of the picture's; with the exact
-/// area of strands where `coverage` is set.
-StrandLayer render_strand_layer(const FrameInputs& inputs, int side, bool coverage, Stages& stages);
+/// area of strands where `coverage` is set. The layer reaches kLayerMargin screen pixels beyond all samples of hair.
+LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage, Stages& stages);
+inline constexpr int kLayerMargin = 16;  ///< a walk may leave the box of all samples by that much
 
 /// Links, alpha fix and filter as scene.settings.link says: R, G, B, A, linear, premultiplied, of the size of the picture.
 /// `nearest`, where given, becomes [h·w]: camera z of what a pixel's first visibility pixel shows after linking.
-Image link_and_filter(StrandLayer layer, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
+Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
                       Buffer<float>* nearest = nullptr);
 
 }  // namespace pelage

@@ -124,8 +124,8 @@ Image linked(const FrameInputs& inputs, Stages& stages, Buffer<float>* nearest =
   const RenderSettings& settings = inputs.scene.settings;
   const int side = static_cast<int>(std::lround(std::sqrt(static_cast<float>(settings.samples))));
   const FrameInputs fine = with_finer_pixels(inputs, side);
-  StrandLayer layer = render_strand_layer(fine, side, settings.link.alpha == LinkAlpha::kCoverage, stages);
-  return link_and_filter(std::move(layer), GroomCurves(fine.scene, fine.view), settings, stages, nearest);
+  LinkInput input = render_strand_layer(fine, side, settings.link.alpha == LinkAlpha::kCoverage, stages);
+  return link_and_filter(std::move(input), GroomCurves(fine.scene, fine.view), settings, stages, nearest);
 }
 
 /// One frame more for what the history has, or as many as a first picture takes.

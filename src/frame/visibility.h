@@ -52,17 +52,24 @@ class VisibilityPacker {
   SegmentNumbering spans_;
 };
 
-/// One sample of hair a visibility pixel, and what is there without hair. A screen pixel is a square of `side`² visibility
-/// pixels (side 1: one sample a pixel).
+/// One sample of hair a visibility pixel, in the part of the picture where hair is. A screen pixel is a square of `side`²
+/// visibility pixels (side 1: one sample a pixel).
 struct StrandLayer {
-  int width = 0, height = 0;            ///< visibility pixels
+  int width = 0, height = 0;            ///< visibility pixels, multiples of side
+  int left = 0, top = 0;                ///< visibility pixel of the picture that its first one is, multiples of side
   int side = 1;                         ///< visibility pixels a side of a screen pixel
   Buffer<VisibilitySample> visibility;  ///< [h·w]
   Buffer<float> depth;                  ///< [h·w] camera z of the strand, metres; +inf for none
   Buffer<Vec3> color;                   ///< [h·w] its scene-linear radiance; 0 for none
   Buffer<float> coverage;               ///< [h·w] share of the pixel that strands cover, 0…1; or empty where nobody knows
   Buffer<float> opaque_depth;           ///< [h·w] camera z of the opaque scene, +inf for none; or empty without one
-  Buffer<Vec4> behind;                  ///< [h·w] what is seen without hair: linear, premultiplied R, G, B, A
+};
+
+/// What all of the picture shows without hair, by visibility pixel.
+struct Behind {
+  int width = 0, height = 0;  ///< visibility pixels
+  Buffer<Vec4> color;         ///< [h·w] linear, premultiplied R, G, B, A
+  Buffer<float> depth;        ///< [h·w] camera z of the opaque scene, metres, +inf for none; or empty without one
 };
 
 }  // namespace pelage

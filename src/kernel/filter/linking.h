@@ -1,11 +1,14 @@
 // Which strand next to an empty pixel is taken to pass through it, and how far a walk along it goes.
 
-// How well a sample fits an empty pixel that lies `offset` pixels from it: 0 … 1. `tangent` is the strand's unit tangent on the
-// screen, without a preferred sign; sigma > 0 in pixels. Huang 2025, eq. 4 (references.bib: Huang2025Linking).
-PELAGE_FN Float filter_alignment(Vec2 offset, Vec2 tangent, Float sigma) {
+// How well a sample fits an empty pixel that lies `offset` pixels from it: 0 ... 1. `tangent` is the strand's unit tangent on
+// the screen, without a preferred sign; sigma > 0 in pixels. Huang 2025, eq. 4 (references.bib: Huang2025Linking).
+// The way to the pixel, as long as the best score that it can get, is the same for all tangents.
+PELAGE_FN Vec2 filter_alignment_axis(Vec2 offset, Float sigma) {
   Float distance2 = dot(offset, offset);
-  Float along = abs(dot(offset, tangent)) / sqrt(distance2);
-  return along * m_exp(Float(-0.5f) * distance2 / (sigma * sigma));
+  return offset * (m_exp(Float(-0.5f) * distance2 / (sigma * sigma)) / sqrt(distance2));
+}
+PELAGE_FN Float filter_alignment(Vec2 offset, Vec2 tangent, Float sigma) {
+  return abs(dot(filter_alignment_axis(offset, sigma), tangent));
 }
 
 // How much of `alignment` is left for a strand that is `behind` (>= 0) the nearest candidate, both in pixels at its distance.

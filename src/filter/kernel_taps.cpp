@@ -1,0 +1,76 @@
+#include "filter/kernel_taps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace pelage {
+namespace {
+
+constexpr int kQuadrant = DirectionCells::kDirections / 2;  // cells of 90°
+
+float inverse_square(float sigma) { return std::isinf(sigma) ? 0 : 1 / (sigma * sigma); }
+
+kernel::FilterKernel terms_of(const AnisotropicKernel& k) {
+  const float major = std::max(0.5f, k.radius), minor = std::max(0.5f, k.radius * k.aspect);
+  kernel::FilterKernel f;
+  f.inverse_major2 = inverse_square(major), f.inverse_minor2 = inverse_square(minor);
+  f.inverse_distance2 = inverse_square(major * k.sigma_distance);
+  f.inverse_angle2 = inverse_square(k.sigma_angle), f.inverse_color2 = inverse_square(k.sigma_color);
+  f.half_inverse_along2 = inverse_square(k.sigma_along) / 2, f.half_inverse_across2 = inverse_square(k.sigma_across) / 2;
+  return f;
+}
+
+std::vector<KernelTap> taps_along(Vec2 tangent, const kernel::FilterKernel& k, int reach, std::size_t stride) {
+  std::vector<KernelTap> taps;
+  for (int j = -reach; j <= reach; ++j)
+    for (int i = -reach; i <= reach; ++i) {
+      const float dx = static_cast<float>(i), dy = static_cast<float>(j);
+      const float along = dx * tangent.x + dy * tangent.y, across = dx * tangent.y - dy * tangent.x;
+      if (!kernel::filter_inside(k, along, across)) continue;
+      float exponent = kernel::filter_distance_exponent(k, along, across);
+      if (k.inverse_angle2 > 0) {
+        const float angle = kernel::filter_angle(along, across);
+        exponent += angle * angle * k.inverse_angle2;
+      }
+      taps.push_back({j * static_cast<std::int32_t>(stride) + i, kernel::m_exp(-exponent)});
+    }
+  return taps;
+}
+
+}  // namespace
+
+int DirectionCells::cell_of(Vec2 t) {
+  // Turned into the half plane y ≥ 0: from (1, 0) over (0, 1) to (−1, 0).
+  if (t.y < 0 || (t.y == 0 && t.x < 0)) t = t * -1.f;
+  const float share = t.x / (std::fabs(t.x) + t.y);  // 1 … −1
+  return static_cast<int>((1 - share) * kQuadrant + 0.5f) % kDirections;
+}
+
+Vec2 DirectionCells::middle(int cell) {
+  const float share = 1 - static_cast<float>(cell) / kQuadrant;
+  const Vec2 t(share, 1 - std::fabs(share));
+  return t * (1 / length(t));
+}
+
+KernelTaps::KernelTaps(const AnisotropicKernel& kernel, std::size_t stride) : terms_(terms_of(kernel)) {
+  std::vector<std::vector<KernelTap>> by_cell(DirectionCells::kDirections);
+  parallel_for(by_cell.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t cell = begin; cell < end; ++cell)
+      by_cell[cell] = taps_along(DirectionCells::middle(static_cast<int>(cell)), terms_, kernel.reach(), stride);
+  });
+  for (const auto& taps : by_cell) {
+    first_.push_back(taps_.size());
+    taps_.insert(taps_.end(), taps.begin(), taps.end());
+  }
+  first_.push_back(taps_.size());
+}
+
+std::size_t KernelTaps::most() const {
+  std::size_t most = 0;
+  for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) most = std::max(most, first_[cell + 1] - first_[cell]);
+  return most;
+}
+
+}  // namespace pelage

@@ -1,0 +1,73 @@
+#include "filter/pixel_mask.h"
+
+#include "core/check.h"
+
+namespace pelage {
+
+PixelMask::PixelMask(int width, int height)
+    : width_(width), height_(height), stride_(static_cast<std::size_t>(width + kBits - 1) / kBits),
+      words_(stride_ * static_cast<std::size_t>(height)) {
+  PELAGE_CHECK(width >= 0 && height >= 0);
+}
+
+PixelMask PixelMask::grown(int reach) const {
+  PixelMask wide(width_, height_), result(width_, height_);
+  if (stride_ == 0) return result;
+  const std::uint64_t last_word = width_ % kBits ? bit(width_) - 1 : ~std::uint64_t{0};
+  std::vector<std::uint64_t> row(stride_);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y) {
+    std::uint64_t* const out = &wide.words_[y * stride_];
+    std::copy_n(&words_[y * stride_], stride_, out);
+    for (int step = 0; step < reach; ++step) {
+      std::copy_n(out, stride_, row.begin());
+      for (std::size_t w = 0; w < stride_; ++w) {
+        out[w] |= row[w] << 1 | row[w] >> 1;
+        if (w > 0) out[w] |= row[w - 1] >> (kBits - 1);
+        if (w + 1 < stride_) out[w] |= row[w + 1] << (kBits - 1);
+      }
+      out[stride_ - 1] &= last_word;
+    }
+  }
+  for (int y = 0; y < height_; ++y)
+    for (int j = std::max(0, y - reach); j <= std::min(height_ - 1, y + reach); ++j)
+      for (std::size_t w = 0; w < stride_; ++w)
+        result.words_[static_cast<std::size_t>(y) * stride_ + w] |= wide.words_[static_cast<std::size_t>(j) * stride_ + w];
+  return result;
+}
+
+template <class Combine>
+PixelMask PixelMask::combined(const PixelMask& other, const Combine& combine) const {
+  PELAGE_CHECK(width_ == other.width_ && height_ == other.height_);
+  PixelMask result(width_, height_);
+  std::transform(words_.begin(), words_.end(), other.words_.begin(), result.words_.begin(), combine);
+  return result;
+}
+
+PixelMask PixelMask::without(const PixelMask& other) const {
+  return combined(other, [](std::uint64_t a, std::uint64_t b) { return a & ~b; });
+}
+
+PixelMask PixelMask::intersected(const PixelMask& other) const {
+  return combined(other, [](std::uint64_t a, std::uint64_t b) { return a & b; });
+}
+
+PixelBox PixelMask::box() const {
+  PixelBox box{width_, 0, height_, 0};
+  for (int y = 0; y < height_; ++y)
+    for (int w = 0; w < static_cast<int>(stride_); ++w) {
+      const std::uint64_t bits = words_[static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(w)];
+      if (bits == 0) continue;
+      box.left = std::min(box.left, w * kBits + std::countr_zero(bits));
+      box.right = std::max(box.right, (w + 1) * kBits - std::countl_zero(bits));
+      box.top = std::min(box.top, y), box.bottom = y + 1;
+    }
+  return box.bottom > 0 ? box : PixelBox{};
+}
+
+std::size_t PixelMask::count() const {
+  std::size_t n = 0;
+  for (const std::uint64_t bits : words_) n += static_cast<std::size_t>(std::popcount(bits));
+  return n;
+}
+
+}  // namespace pelage
