@@ -24,6 +24,7 @@ void add_verbs(CLI::App& app) {
   add_render(app);
   add_compare(app);
   add_trace(app);
+  add_denoise(app);
   add_report(app);
   add_tune(app);
   add_bench(app);

@@ -45,6 +45,11 @@ void check_output(const std::string& path) {
   const io::AtomicFile probe(path);
 }
 
+void check_gbuffer_output(const std::string& path) {
+  if (extension_of(path) != "exr") throw Error(path, "", "not an EXR", "a G-buffer has many channels; call it name.exr");
+  const io::AtomicFile probe(path);
+}
+
 bool write_flat_picture(const std::string& path, const Image& linear, const Image& display, bool keep_alpha) {
   const std::string extension = extension_of(path);
   if (extension == "png") write_image(path, keep_alpha ? display : without_alpha(display));

@@ -18,6 +18,9 @@ std::string numbered(const std::string& path, int number);
 /// Before long work: throws Error where no picture can be written to `path`. Opens what writing would open, and drops it.
 void check_output(const std::string& path);
 
+/// The same for a G-buffer, which is an EXR.
+void check_gbuffer_output(const std::string& path);
+
 /// Writes the R, G, B, A of a picture as PNG (`display`; with its alpha where `keep_alpha`) or Radiance HDR (`linear`).
 /// Returns false, and writes nothing, for a path of another kind.
 bool write_flat_picture(const std::string& path, const Image& linear, const Image& display, bool keep_alpha);

@@ -2,6 +2,7 @@
 #include "render.h"
 
 #include <fmt/format.h>
+#include <pelage/denoise.h>
 #include <pelage/error.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <memory>
 
 #include "core/check.h"
+#include "frame/sample_positions.h"
 #include "io/scene_tables.h"
 #include "picture_file.h"
 #include "terminal.h"
@@ -104,9 +106,17 @@ RenderResult render_pictures(const RenderOptions& options, Scene scene, const Pr
   return result;
 }
 
+// What method link starts from; its samples stand as pixels.
+void write_gbuffer(const RenderOptions& options, const Scene& scene, const Progress& progress) {
+  Scene linked = scene;
+  if (!is_linking(linked.settings.method)) linked.settings.samples = options.samples.value_or(1);
+  write_image(options.gbuffer, render_gbuffer(linked, progress), true);
+}
+
 void render_verb(const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   for (const std::string& path : options.outputs) check_output(numbered(path, 1));
+  if (!options.gbuffer.empty()) check_gbuffer_output(options.gbuffer);
   std::vector<std::string> notes;
   RenderResult result;
   Scene scene;
@@ -115,7 +125,8 @@ void render_verb(const RenderOptions& options) {
     const Progress progress = line.callback();
     scene = make_scene(options, progress, notes);
     const double read_seconds = seconds_since(start);
-    result = render_pictures(options, scene, progress);
+    if (!options.gbuffer.empty()) write_gbuffer(options, scene, progress);
+    if (!options.outputs.empty()) result = render_pictures(options, scene, progress);
     result.stats.insert(result.stats.begin(), {"io.read", read_seconds, 0, scene.grooms.size() + scene.meshes.size(), "files"});
   }
   for (const std::string& note : notes) fmt::print(stderr, "pelage: {}: {}\n", options.input, note);
@@ -163,6 +174,9 @@ void add_render(CLI::App& app) {
   verb->add_option("-o,--output", o->outputs, "Picture to write: .exr, .png or .hdr; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
+  verb->add_option("--gbuffer", o->gbuffer,
+                   "EXR to write with what `pelage denoise` reads, one sample a pixel, or --spp 4, 9, 16")
+      ->type_name("FILE");
   add_scene_options(*verb, *o);
   add_picture_options(*verb, *o);
   verb->add_flag("--stats", o->stats, "Print time and memory of every stage");
@@ -181,7 +195,7 @@ void add_render(CLI::App& app) {
   verb->callback([o] {
     if (o->schema) return fmt::print("{}", io::scene_schema());
     if (o->input.empty()) throw CLI::RequiredError("INPUT");
-    if (o->outputs.empty()) throw CLI::RequiredError("--output");
+    if (o->outputs.empty() && o->gbuffer.empty()) throw CLI::RequiredError("--output");
     render_verb(*o);
   });
 }

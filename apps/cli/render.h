@@ -17,7 +17,7 @@ namespace pelage::cli {
 
 /// As typed; what was not typed is empty and keeps the scene's value.
 struct RenderOptions {
-  std::string input;
+  std::string input, gbuffer;
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
   std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment;
@@ -30,6 +30,8 @@ struct RenderOptions {
   bool no_head = false, full_float = false, stats = false, json = false, schema = false;
 };
 
+/// Adds the options that say what stands in a scene, and from where it is seen.
+void add_camera_options(CLI::App& verb, RenderOptions& options);
 /// Adds the options that say what is seen and how it is shown: size, camera, light, hair, display.
 void add_scene_options(CLI::App& verb, RenderOptions& options);
 

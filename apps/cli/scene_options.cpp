@@ -14,17 +14,7 @@ void add_display_options(CLI::App& verb, RenderOptions& o) {
 }
 
 void add_world_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  verb.add_flag("--no-head", o.no_head,
-                "Leave away the mannequin, which shows below hair that was grown on it when no --mesh is given");
-  add_import_options(verb, o.import);
-  verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");
-  verb.add_option("--target", o.target, "What it looks at")->delimiter(',')->expected(3)->type_name("X,Y,Z");
-  verb.add_option("--fov", o.fov, "Full vertical angle, degrees")->check(CLI::Range(0.01, 179.0));
-  verb.add_option("--turn", o.turn, "Takes the camera around the target, degrees")->check(CLI::Range(-3600.0, 3600.0));
-  verb.add_flag("--ortho", o.orthographic, "Orthographic camera");
+  add_camera_options(verb, o);
   verb.add_option("--light", o.lights, "directional:DX,DY,DZ:R,G,B or point:X,Y,Z:R,G,B; replaces the lights; may be repeated")
       ->type_name("LIGHT")
       ->allow_extra_args(false);
@@ -51,6 +41,20 @@ void add_hair_options(CLI::App& verb, RenderOptions& o) {
 }
 
 }  // namespace
+
+void add_camera_options(CLI::App& verb, RenderOptions& o) {
+  verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  verb.add_flag("--no-head", o.no_head,
+                "Leave away the mannequin, which shows below hair that was grown on it when no --mesh is given");
+  add_import_options(verb, o.import);
+  verb.add_option("--eye", o.eye, "Where the camera stands")->delimiter(',')->expected(3)->type_name("X,Y,Z");
+  verb.add_option("--target", o.target, "What it looks at")->delimiter(',')->expected(3)->type_name("X,Y,Z");
+  verb.add_option("--fov", o.fov, "Full vertical angle, degrees")->check(CLI::Range(0.01, 179.0));
+  verb.add_option("--turn", o.turn, "Takes the camera around the target, degrees")->check(CLI::Range(-3600.0, 3600.0));
+  verb.add_flag("--ortho", o.orthographic, "Orthographic camera");
+}
 
 void add_scene_options(CLI::App& verb, RenderOptions& options) {
   add_display_options(verb, options);

@@ -1,14 +1,18 @@
 // pelage trace: the truth of what pelage render draws.
 #include <fmt/format.h>
+#include <pelage/denoise.h>
 #include <pelage/error.h>
+#include <pelage/io.h>
 #include <pelage/runtime.h>
 #include <pelage/trace.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
 
+#include "frame/sample_positions.h"
 #include "picture_file.h"
 #include "render.h"
 #include "stats_json.h"
@@ -22,7 +26,7 @@ struct TraceOptions {
   RenderOptions scene;
   TraceSettings settings;
   std::string checkpoint;
-  bool no_checkpoint = false;
+  bool no_checkpoint = false, samples_given = false;
 };
 
 const std::map<std::string, Integrator> kIntegrators{
@@ -97,6 +101,26 @@ void print_trace_stats(const TraceResult& result) {
              thread_count());
 }
 
+// One sample a pixel of a picture that has as many pixels as there are samples.
+void write_gbuffer(TraceOptions o) {
+  check_gbuffer_output(o.scene.gbuffer);
+  const int samples = o.samples_given ? o.settings.samples : 1;
+  if (!is_link_sample_count(samples))
+    throw UsageError("--spp", std::to_string(samples), "no square of visibility pixels", "use 1, 4, 9 or 16 with --gbuffer");
+  const int side = static_cast<int>(std::lround(std::sqrt(samples)));
+  o.settings.samples = 1;
+  o.settings.layers = gbuffer_layers();
+  std::vector<std::string> notes;
+  {
+    ProgressLine line;
+    const Progress progress = line.callback();
+    Scene scene = make_scene(o.scene, progress, notes);
+    scene.settings.width *= side, scene.settings.height *= side;
+    write_image(o.scene.gbuffer, trace(scene, o.settings, progress).linear, true);
+  }
+  for (const std::string& note : notes) fmt::print(stderr, "pelage: {}: {}\n", o.scene.input, note);
+}
+
 void trace_verb(TraceOptions o) {
   for (const std::string& path : o.scene.outputs) check_output(path);
   // Until the picture is written, the state stands beside it; a state that was asked for stays.
@@ -159,10 +183,15 @@ void add_trace(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("trace", "Path trace a groom or a scene file: the truth beside render");
   auto o = std::make_shared<TraceOptions>();
   verb->add_option("INPUT", o->scene.input, "Groom file, or scene file (JSON)")->type_name("FILE")->required();
-  verb->add_option("-o,--output", o->scene.outputs, "Picture to write: .exr (32 bits a channel), .png or .hdr; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->required();
+  CLI::Option* output = verb->add_option("-o,--output", o->scene.outputs,
+                                         "Picture to write: .exr (32 bits a channel), .png or .hdr; may be repeated")
+                            ->type_name("FILE")
+                            ->allow_extra_args(false);
+  CLI::Option* gbuffer =
+      verb->add_option("--gbuffer", o->scene.gbuffer,
+                       "EXR to write instead, with what `pelage denoise` reads: one sample a pixel, or --spp 4, 9, 16")
+          ->type_name("FILE");
+  output->excludes(gbuffer);
   add_scene_options(*verb, o->scene);
   add_trace_options(*verb, *o);
   verb->add_flag("--stats", o->scene.stats, "Print time and memory");
@@ -175,7 +204,12 @@ void add_trace(CLI::App& app) {
       "  pelage trace scene.json -o quick.png --time 60\n"
       "  pelage trace scene.json -o noisy.exr --spp 1 --layers Z,position,tangent,strand,albedo\n"
       "  pelage trace scene.json -o dual.exr --integrator dual --checkpoint dual.state");
-  verb->callback([o] { trace_verb(*o); });
+  verb->callback([o, verb] {
+    if (o->scene.outputs.empty() && o->scene.gbuffer.empty()) throw CLI::RequiredError("--output");
+    o->samples_given = verb->count("--spp") > 0;
+    if (!o->scene.gbuffer.empty()) return write_gbuffer(*o);
+    trace_verb(*o);
+  });
 }
 
 }  // namespace pelage::cli

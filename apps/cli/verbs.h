@@ -19,6 +19,7 @@ void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_trace(CLI::App& app);
+void add_denoise(CLI::App& app);
 void add_report(CLI::App& app);
 void add_tune(CLI::App& app);
 void add_bench(CLI::App& app);

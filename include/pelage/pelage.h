@@ -1,6 +1,7 @@
 // Everything public at once.
 #pragma once
 
+#include <pelage/denoise.h>
 #include <pelage/error.h>
 #include <pelage/grow.h>
 #include <pelage/image.h>

@@ -38,17 +38,6 @@ Behind behind_hair(const FrameInputs& inputs, Buffer<float> opaque_depth, const 
   return behind;
 }
 
-/// Sets the place of the layer: around all hair, whole screen pixels.
-void place_layer(const Radiance& radiance, const CameraView& view, StrandLayer& layer) {
-  const PixelMask hair(view.width, view.height, [&](std::size_t p) { return radiance.index[p] != Radiance::kNone; });
-  const PixelBox box = hair.box();
-  const int margin = kLayerMargin * layer.side;
-  const auto down = [&](int x) { return std::max(0, x - margin) / layer.side * layer.side; };
-  const auto up = [&](int x, int end) { return std::min(end, (x + margin + layer.side - 1) / layer.side * layer.side); };
-  layer.left = down(box.left), layer.top = down(box.top);
-  layer.width = up(box.right, view.width) - layer.left, layer.height = up(box.bottom, view.height) - layer.top;
-}
-
 /// What the layer's pixels show, from the evaluations of shade; `depth` of the opaque scene and `coverage` are those of the
 /// whole picture, or empty.
 void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radiance& radiance,
@@ -99,6 +88,15 @@ std::uint64_t bytes_of(const LinkInput& in) {
 
 }  // namespace
 
+void place_layer(const PixelMask& hair, StrandLayer& layer) {
+  const PixelBox box = hair.box();
+  const int margin = kLayerMargin * layer.side;
+  const auto down = [&](int x) { return std::max(0, x - margin) / layer.side * layer.side; };
+  const auto up = [&](int x, int end) { return std::min(end, (x + margin + layer.side - 1) / layer.side * layer.side); };
+  layer.left = down(box.left), layer.top = down(box.top);
+  layer.width = up(box.right, hair.width()) - layer.left, layer.height = up(box.bottom, hair.height()) - layer.top;
+}
+
 LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage, Stages& stages) {
   const std::uint64_t pixels = static_cast<std::uint64_t>(inputs.view.width) * static_cast<std::uint64_t>(inputs.view.height);
   OpaqueLayer opaque;
@@ -136,7 +134,8 @@ LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage
   LinkInput input;
   stages.run("filter.visibility", "pixels", [&](const Progress&) {
     input.layer.side = side;
-    place_layer(radiance, inputs.view, input.layer);
+    const auto is_hair = [&](std::size_t p) { return radiance.index[p] != Radiance::kNone; };
+    place_layer(PixelMask(inputs.view.width, inputs.view.height, is_hair), input.layer);
     spread_samples(gbuffer.center, inputs.view.width, radiance, samples, gbuffer.opaque_depth, covered, input.layer);
     input.behind = behind_hair(inputs, std::move(gbuffer.opaque_depth), opaque);
     return StageWork{pixels, bytes_of(input)};

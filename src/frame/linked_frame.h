@@ -8,6 +8,7 @@
 
 namespace pelage {
 
+class PixelMask;
 class StrandCurves;
 
 /// What linking works on.
@@ -20,6 +21,9 @@ struct LinkInput {
 /// area of strands where `coverage` is set. The layer reaches kLayerMargin screen pixels beyond all samples of hair.
 LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage, Stages& stages);
 inline constexpr int kLayerMargin = 16;  ///< a walk may leave the box of all samples by that much
+
+/// Sets place and size of `layer`, of whose side² visibility pixels a screen pixel has, around all of `hair`.
+void place_layer(const PixelMask& hair, StrandLayer& layer);
 
 /// Links, alpha fix and filter as scene.settings.link says: R, G, B, A, linear, premultiplied, of the size of the picture.
 /// `nearest`, where given, becomes [h·w]: camera z of what a pixel's first visibility pixel shows after linking.

@@ -15,14 +15,13 @@
 #include "filter/motion.h"
 #include "filter/oidn.h"
 #include "frame/camera_view.h"
+#include "frame/check_settings.h"
 #include "frame/methods.h"
 #include "frame/one_frame.h"
 #include "frame/sample_positions.h"
 #include "light/light.h"
 
 namespace pelage {
-namespace {
-
 void check_settings(const RenderSettings& s) {
   const auto require = [](bool sound, const char* name, auto value, const char* range) {
     if (!sound) throw Error("settings", name, fmt::format("{} is out of range", value), range);
@@ -43,6 +42,8 @@ void check_settings(const RenderSettings& s) {
   if (s.method != Method::kMsaa && s.alpha == AlphaSource::kAnalytic)
     throw Error("settings", "alpha", "analytic opacity goes with method msaa alone", "use samples");
 }
+
+namespace {
 
 StageWork groom_work(const Scene& scene) {
   StageWork work;
