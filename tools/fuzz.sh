@@ -15,12 +15,13 @@ $build/tests/fuzz/fuzz_corpus $build/corpus
 mkdir -p $build/findings
 status=0
 for target in "${targets[@]}"; do
+  mkdir -p $build/corpus/$target
   seeds=(tests/regress/inputs/$target-*)
   [ -e "${seeds[0]}" ] && cp "${seeds[@]}" $build/corpus/$target/
   log=$build/findings/$target.log
   # One thread: the readers' own parallelism would only slow tiny inputs down.
   if UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 nice $build/tests/fuzz/fuzz_$target -max_total_time=$seconds \
-      -max_len=4096 -rss_limit_mb=1024 -timeout=5 -artifact_prefix=$build/findings/$target- $build/corpus/$target > $log 2>&1; then
+      -max_len=4096 -rss_limit_mb=1024 -timeout=25 -artifact_prefix=$build/findings/$target- $build/corpus/$target > $log 2>&1; then
     echo "$target: $(grep -o 'Done.*' $log | tail -1)"
   else
     echo "$target: FINDING, see $log"

@@ -26,7 +26,8 @@ void reserve(ScreenBlock& block, std::size_t points) {
 std::size_t assemble_strands(const AssembleJob& job, std::size_t first, std::size_t last, ScreenBlock& block) {
   const StrandSet& set = *job.strands;
   PELAGE_CHECK(first < last && last <= set.strand_count());
-  const auto points = [&](std::size_t s) {
+  const auto points = [&](std::size_t i) {
+    const std::size_t s = strand_at(job, i);
     return std::size_t{span_count(set.basis, set.offsets[s + 1] - set.offsets[s])} * job.subdivisions + 1;
   };
   std::size_t end = first, total = 0;

@@ -73,7 +73,7 @@ const wide::FloatTag kFloat{};
 
 Mask equal(hn::Vec<wide::UintTag> a, std::uint32_t b) { return Mask{hn::RebindMask(kFloat, hn::Eq(a, hn::Set(kUint, b)))}; }
 
-/// Camera space of points [begin, end) of the set to x, y, z, and half widths in metres.
+/// Camera space of points [begin, end) of the set to x, y, z, and half widths in metres. Writes whole lanes.
 void transform_points(const AssembleJob& job, std::size_t begin, std::size_t end, float* x, float* y, float* z, float* w) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
   const StrandSet& set = *job.strands;
@@ -84,7 +84,7 @@ void transform_points(const AssembleJob& job, std::size_t begin, std::size_t end
   for (std::size_t i = begin; i < end; i += lanes) {
     const float* points = &set.points[i].x;
     const float* widths = one_width ? nullptr : &set.widths[i];
-    if (i + lanes > end) {
+    if (i + lanes > set.points.size()) {
       std::copy(points, points + 3 * (end - i), tail);
       if (!one_width) std::copy(widths, widths + (end - i), tail + 3 * lanes), widths = tail + 3 * lanes;
       points = tail;
@@ -150,21 +150,35 @@ void number_points(std::uint32_t id, std::size_t at, std::size_t count, ScreenBl
   ids[count - 1] = ScreenBlock::kNoSegment;
 }
 
+/// Appends the points of strands from number `first` of the order on, as long as they follow each other in memory. Returns the
+/// number after the last.
+std::size_t copy_run(const AssembleJob& job, std::size_t first, std::size_t end, ScreenBlock& block) {
+  const StrandSet& set = *job.strands;
+  const std::uint32_t strand = strand_at(job, first);
+  std::uint32_t last = strand + 1;
+  while (first + (last - strand) < end && strand_at(job, first + (last - strand)) == last) ++last;
+  const std::uint32_t from = set.offsets[strand], to = set.offsets[last];
+  const std::size_t at = block.count, next = first + (last - strand);
+  if (from == to) return next;
+  transform_points(job, from, to, &block.x[at], &block.y[at], &block.depth[at], &block.radius[at]);
+  number_points(job.base_id + from, at, to - from, block);
+  for (std::uint32_t s = strand; s < last; ++s)
+    if (set.offsets[s + 1] > from) block.id[at + set.offsets[s + 1] - from - 1] = ScreenBlock::kNoSegment;
+  block.count += to - from;
+  return next;
+}
+
 void CameraPoints(const AssembleJob& job, std::size_t first, std::size_t end, ScreenBlock& block) {
   const StrandSet& set = *job.strands;
   const std::uint32_t parts = job.subdivisions;
   const bool through_points = set.basis == CurveBasis::kLinear || set.basis == CurveBasis::kCatmullRom;
   block.count = 0;
   if (parts == 1 && through_points) {
-    const std::uint32_t from = set.offsets[first], to = set.offsets[end];
-    transform_points(job, from, to, block.x.data(), block.y.data(), block.depth.data(), block.radius.data());
-    block.count = to - from;
-    number_points(job.base_id + from, 0, block.count, block);
-    for (std::size_t s = first; s < end; ++s)
-      if (set.offsets[s + 1] > from) block.id[set.offsets[s + 1] - from - 1] = ScreenBlock::kNoSegment;
+    for (std::size_t i = first; i < end;) i = copy_run(job, i, end, block);
     return;
   }
-  for (std::size_t s = first; s < end; ++s) {
+  for (std::size_t i = first; i < end; ++i) {
+    const std::uint32_t s = strand_at(job, i);
     const std::uint32_t begin = set.offsets[s], spans = span_count(set.basis, set.offsets[s + 1] - begin);
     if (spans == 0) continue;
     const std::size_t points = std::size_t{spans} * parts + 1;

@@ -28,19 +28,21 @@ int segments_per_span(const StrandLines& lines, std::span<const CameraView> view
   return std::clamp(static_cast<int>(std::ceil(std::min(texels, 1e6f) / kTexelsPerSegment)), 1, StrandLines::kMaxSegments);
 }
 
-/// Calls body(block) for one strand of each `stride` of all grooms, a few thousand points at a time, in parallel.
+/// The strands of a groom that are drawn.
+struct Picked {
+  const StrandLines* lines;
+  int segments_per_span;
+  std::vector<std::uint32_t> strands;
+};
+
+/// Calls body(block) for all strands of all grooms, a few thousand points at a time, in parallel.
 template <class Body>
-void for_each_block(const std::vector<StrandLines>& grooms, std::span<const CameraView> views, std::size_t stride,
-                    const Body& body) {
-  for (const StrandLines& lines : grooms) {
-    if (lines.bounds().empty()) continue;
-    const int segments = segments_per_span(lines, views);
-    const std::size_t drawn = (lines.strand_count() + stride - 1) / stride;
-    parallel_for(drawn, kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
+void for_each_block(const std::vector<Picked>& grooms, const Body& body) {
+  for (const Picked& groom : grooms) {
+    parallel_for(groom.strands.size(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
       thread_local LineBlock block;
-      const std::size_t last = std::min(end * stride, lines.strand_count());
-      for (std::size_t s = begin * stride; s < last;) {
-        s = lines.fill(s, last, stride, segments, block);
+      for (std::size_t s = begin; s < end;) {
+        s = groom.lines->fill(groom.strands, s, end, groom.segments_per_span, block);
         body(block);
       }
     });
@@ -124,11 +126,15 @@ std::vector<OpacityMap> build_opacity_maps(const std::vector<StrandLines>& groom
   if (box.empty()) return std::vector<OpacityMap>(views.size());
   std::vector<Drawing> drawings;
   for (const CameraView& view : views) drawings.push_back(begin_drawing(view, box, settings.strand_stride));
+  std::vector<Picked> picked;
+  for (const StrandLines& lines : grooms)
+    if (!views.empty() && !lines.bounds().empty())
+      picked.push_back({&lines, segments_per_span(lines, views), lines.pick(settings.strand_stride, views.front())});
   // Strands become lines once for all views; the lines stay in the cache.
-  for_each_block(grooms, views, settings.strand_stride, [&](const LineBlock& block) {
+  for_each_block(picked, [&](const LineBlock& block) {
     for (const Drawing& d : drawings) splat_depths(block, d.target);
   });
-  for_each_block(grooms, views, settings.strand_stride, [&](const LineBlock& block) {
+  for_each_block(picked, [&](const LineBlock& block) {
     for (const Drawing& d : drawings) splat_crossings(block, d.target);
   });
   std::vector<OpacityMap> maps;

@@ -7,6 +7,7 @@
 #include "core/rng.h"
 #include "frame/camera_view.h"
 #include "frame/curve_basis.h"
+#include "frame/draw_order.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
@@ -57,7 +58,6 @@ std::size_t line_points(const StrandSet& set, std::size_t strand, std::size_t se
 
 /// One strand of [begin, begin + stride), below `count`. Which one is random: grooms have patterns in their order.
 std::size_t pick_strand(std::size_t begin, std::size_t stride, std::size_t count) {
-  if (stride == 1) return begin;
   constexpr std::uint64_t kSeed = 0x6f706163;
   const std::size_t choices = std::min(stride, count - begin);
   const float u = Rng(kSeed, static_cast<std::uint32_t>(begin)).uniform();
@@ -100,19 +100,30 @@ void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, L
   put(point(begin + spans * stride), 0);
 }
 
-std::size_t StrandLines::fill(std::size_t first, std::size_t last, std::size_t stride, int segments_per_span,
-                              LineBlock& block) const {
-  PELAGE_CHECK(segments_per_span >= 1 && segments_per_span <= kMaxSegments && stride >= 1);
+std::vector<std::uint32_t> StrandLines::pick(std::size_t stride, const CameraView& view) const {
+  PELAGE_CHECK(stride >= 1);
+  std::vector<std::uint32_t> picked;
+  if (stride == 1) picked = draw_order(*groom_, view);
+  if (!picked.empty()) return picked;
+  picked.resize((strand_count() + stride - 1) / stride);
+  for (std::size_t i = 0; i < picked.size(); ++i)
+    picked[i] = static_cast<std::uint32_t>(stride == 1 ? i : pick_strand(i * stride, stride, strand_count()));
+  return picked;
+}
+
+std::size_t StrandLines::fill(const std::vector<std::uint32_t>& picked, std::size_t first, std::size_t last,
+                              int segments_per_span, LineBlock& block) const {
+  PELAGE_CHECK(segments_per_span >= 1 && segments_per_span <= kMaxSegments);
   const StrandSet& set = *groom_->strands;
   const int n = set.basis == CurveBasis::kLinear ? 1 : segments_per_span;
   std::vector<Vec4> weights;  // of the control points, at 0, 1/n, … (n − 1)/n
   for (int k = 0; k < n; ++k) weights.push_back(basis_weights(set.basis, static_cast<float>(k) / static_cast<float>(n)));
   std::size_t points = 0, s = first;
-  for (; s < last && (s == first || points < LineBlock::kPoints); s += stride)
-    points += line_points(set, pick_strand(s, stride, last), static_cast<std::size_t>(n));
+  for (; s < last && (s == first || points < LineBlock::kPoints); ++s)
+    points += line_points(set, picked[s], static_cast<std::size_t>(n));
   reserve(block, points);
   block.count = 0;
-  for (std::size_t i = first; i < s; i += stride) append(pick_strand(i, stride, last), weights, block);
+  for (std::size_t i = first; i < s; ++i) append(picked[i], weights, block);
   for (std::size_t j = block.count; j < block.count + LineBlock::kPadding; ++j)
     block.x[j] = block.y[j] = block.z[j] = block.width[j] = 0;
   return s;

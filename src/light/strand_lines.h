@@ -20,9 +20,12 @@ class StrandLines {
   const Bounds& bounds() const { return bounds_; }  ///< of the control points, world space
   float mean_span() const { return mean_span_; }    ///< metres, over at most a thousand strands
 
-  /// Fills `block` with one strand, picked by a random number of its own, of each `stride` strands from `first` up to
-  /// `last`: at least one, as many as LineBlock::kPoints takes. Returns where to go on. 1 ≤ segments_per_span ≤ kMaxSegments; linear grooms take one whatever is asked for.
-  std::size_t fill(std::size_t first, std::size_t last, std::size_t stride, int segments_per_span, LineBlock& block) const;
+  /// One strand of each `stride` neighbors, picked by a random number of its own; all for stride 1, in the order that suits `view`.
+  std::vector<std::uint32_t> pick(std::size_t stride, const CameraView& view) const;
+  /// Fills `block` with the strands picked[first], … before picked[last]: at least one, as many as LineBlock::kPoints takes.
+  /// Returns where to go on. 1 ≤ segments_per_span ≤ kMaxSegments; linear grooms take one whatever is asked for.
+  std::size_t fill(const std::vector<std::uint32_t>& picked, std::size_t first, std::size_t last, int segments_per_span,
+                   LineBlock& block) const;
   static constexpr int kMaxSegments = 4;
 
  private:

@@ -10,6 +10,7 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "core/shared_progress.h"
+#include "frame/draw_order.h"
 #include "raster/analytic.h"
 #include "raster/band_area.h"
 #include "raster/band_walk.h"
@@ -80,7 +81,9 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
   Shared shared{TileLocks(out.width, out.height), {}};
   if (layers.coverage) shared.full.emplace(out.width, out.height);
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
-    const AssembleJob job = make_assemble_job(scene, view, numbering, g);
+    const std::vector<std::uint32_t> order = draw_order(scene.grooms[g], view);
+    AssembleJob job = make_assemble_job(scene, view, numbering, g);
+    job.order = order;
     parallel_for(job.strands->strand_count(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
       Worker& worker = workers.local();
       std::uint64_t points = 0;
