@@ -136,7 +136,7 @@ void print_table(const Outcome& o, bool stats) {
                  static_cast<double>(s.bytes) / (1 << 20), s.items, s.unit);
     fmt::print("{} pixels of hair, {} strands", o.result.hair_pixels, o.result.strands);
     if (o.result.camera_error) fmt::print(", camera {:.2f} pixels from its samples", *o.result.camera_error);
-    fmt::print("\n");
+    fmt::print("\nnoise of colors {:.2f}, filter {:.1f} pixels to either side\n", o.result.noise, o.result.radius);
   }
   if (!o.gain) return;
   fmt::print("{:>22} {:>10} {:>10}   {} pixels of hair\n", "", "before", "after", o.gain->pixels);
@@ -145,11 +145,10 @@ void print_table(const Outcome& o, bool stats) {
 }
 
 void print_json(const DenoiseVerb& verb, const Outcome& o) {
-  Json j{{"outputs", verb.scene.outputs},
-         {"width", o.result.linear.width},
-         {"height", o.result.linear.height},
-         {"hair_pixels", o.result.hair_pixels},
-         {"strands", o.result.strands}};
+  Json j{{"outputs", verb.scene.outputs},    {"width", o.result.linear.width},
+         {"height", o.result.linear.height}, {"hair_pixels", o.result.hair_pixels},
+         {"strands", o.result.strands},      {"noise", o.result.noise},
+         {"radius", o.result.radius}};
   if (o.result.camera_error) j["camera_error"] = *o.result.camera_error;
   if (o.gain)
     for (int i = 0; i < 2; ++i) j[i == 0 ? "before" : "after"] = {{"mse", o.gain->mse[i]}, {"psnr", o.gain->psnr[i]}};
@@ -199,7 +198,8 @@ void add_filter_options(CLI::App& verb, DenoiseVerb& o) {
                   "Samples a pixel of the result: 1, 4, 9 or 16; 4: the G-buffer is twice as wide and high")
       ->check(CLI::IsMember({1, 4, 9, 16}))
       ->capture_default_str();
-  verb.add_option("--kernel-size,--k", o.settings.link.kernel_size, "Half of the filter's length over the size of the hair")
+  verb.add_option("--kernel-size,--k", o.settings.link.kernel_size,
+                  "Half of the filter's length over the size of the hair; 0: by the noise of the colors")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   verb.add_option("--aspect", o.settings.link.aspect, "The filter's width over its length")

@@ -27,7 +27,12 @@ struct GBufferField {
 const std::vector<GBufferField>& gbuffer_fields();
 
 struct DenoiseSettings {
-  LinkSettings link;
+  /// Its kernel_size 0 stands for a kernel that the noise of the samples' colors chooses, and is the default here.
+  LinkSettings link = [] {
+    LinkSettings settings;
+    settings.kernel_size = 0;
+    return settings;
+  }();
   /// Visibility pixels a pixel of the result: 1, 4, 9 or 16. A G-buffer for 4 is twice as wide and high as the result.
   int samples = 1;
   /// What fields are called in the G-buffer, where not by their own name: {"position", "ViewLayer.Position"}. Its components are
@@ -48,6 +53,8 @@ struct DenoiseResult {
   std::size_t strands = 0;      ///< that it shows
   /// Pixels, root of the mean square, between samples and what the camera that was fitted to `position` makes of them.
   std::optional<float> camera_error;
+  float noise = 0;   ///< of the samples' colors: 0 none, 1 as much as strands differ
+  float radius = 0;  ///< r of the filter, pixels; 0 where it has not filtered
   std::vector<StageStat> stats;
 };
 

@@ -11,9 +11,12 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "filter/anisotropic.h"
 #include "filter/fill_holes.h"
+#include "filter/link.h"
 #include "filter/pixel_mask.h"
 #include "filter/sample_curves.h"
+#include "filter/sample_noise.h"
 #include "filter/strand_curves.h"
 #include "frame/camera_view.h"
 #include "frame/curve_basis.h"
@@ -163,6 +166,14 @@ CameraView view_of(const Scene& scene, const HairSamples& samples) {
   return make_camera_view(scene.camera, samples.width, samples.height);
 }
 
+/// The settings of link for a kernel of `radius` pixels, by eq. 13 of Huang 2025 the other way round.
+LinkSettings with_radius(LinkSettings link, float radius, const StrandLayer& layer) {
+  const PixelBox box = screen_box(layer);
+  const float size = std::sqrt(static_cast<float>(box.width()) * static_cast<float>(box.height()));
+  link.kernel_size = size > 0 ? std::min(1.f, radius / size) : 0;
+  return link;
+}
+
 std::size_t count_strands(const HairSamples& samples) {
   std::vector<std::uint64_t> keys;
   for (std::size_t p = 0; p < samples.strand.size(); ++p)
@@ -184,6 +195,7 @@ DenoiseResult denoise(const Image& gbuffer, const DenoiseSettings& settings, con
     if (settings.link.alpha == LinkAlpha::kCoverage && samples.coverage.empty())
       throw Error("G-buffer", "channel coverage", "is not there", "opacity from coverage needs it; use count");
     for (std::size_t p = 0; p < pixels; ++p) result.hair_pixels += samples.is_hair(p);
+    result.noise = color_noise(samples);
     return StageWork{pixels, pixels * gbuffer.channel_count() * sizeof(float)};
   });
 
@@ -210,6 +222,9 @@ DenoiseResult denoise(const Image& gbuffer, const DenoiseSettings& settings, con
   });
   RenderSettings how;
   how.link = settings.link;
+  if (how.link.filter && how.link.kernel_size == 0)
+    how.link = with_radius(how.link, radius_for_noise(result.noise, side), input.layer);
+  if (how.link.filter && result.hair_pixels > 0) result.radius = kernel_for(screen_box(input.layer), how.link).radius;
   result.linear = link_and_filter(std::move(input), *curves, how, stages);
   result.stats = stages.take();
   return result;

@@ -24,7 +24,7 @@ class DenoiseVerb : public Cli {
     ASSERT_EQ(made.status, 0) << made.err;
   }
   double error_after(const std::string& options) const {
-    const Outcome done = run("denoise --gbuffer g.exr -o out.exr --json --k 0.02 " + options);
+    const Outcome done = run("denoise --gbuffer g.exr -o out.exr --json " + options);
     EXPECT_EQ(done.status, 0) << done.err;
     if (done.status != 0) return -1;
     const auto json = nlohmann::json::parse(done.out);
@@ -36,16 +36,16 @@ class DenoiseVerb : public Cli {
 
 TEST_F(DenoiseVerb, RenderedSamplesBecomeThePictureOfMethodLink) {
   make_gbuffer("render");
-  ASSERT_EQ(run("render " + kScene + "-o linked.exr --float --method link --kernel-size 0.02").status, 0);
+  ASSERT_EQ(run("render " + kScene + "-o linked.exr --float --method link --kernel-size 0.03").status, 0);
   ASSERT_EQ(run("render " + kScene + "-o truth.exr --method ssaa --spp 64").status, 0);
-  const double with = error_after("--reference truth.exr --float --groom hair.pelage");
+  const double with = error_after("--reference truth.exr --float --k 0.03 --groom hair.pelage");
   const Image linked = read_image(in("linked.exr").string()), ours = read_image(in("out.exr").string());
   ASSERT_EQ(ours.pixels.size(), linked.pixels.size());
   std::size_t different = 0;
   for (std::size_t i = 0; i < ours.pixels.size(); ++i) different += std::abs(ours.pixels[i] - linked.pixels[i]) > 1e-3f;
   EXPECT_LT(different, ours.pixels.size() / 200);
-  EXPECT_LT(error_after("--reference truth.exr"), 1.15 * with);
-  EXPECT_GT(error_after("--reference truth.exr --method filter-only"), with);
+  EXPECT_LT(error_after("--reference truth.exr --k 0.03"), 1.15 * with);
+  EXPECT_GT(error_after("--reference truth.exr --k 0.03 --method filter-only"), with);
 }
 
 TEST_F(DenoiseVerb, TracedSamplesComeCloserToTheTruth) {
