@@ -136,7 +136,8 @@ void print_table(const Outcome& o, bool stats) {
                  static_cast<double>(s.bytes) / (1 << 20), s.items, s.unit);
     fmt::print("{} pixels of hair, {} strands", o.result.hair_pixels, o.result.strands);
     if (o.result.camera_error) fmt::print(", camera {:.2f} pixels from its samples", *o.result.camera_error);
-    fmt::print("\nnoise of colors {:.2f}, filter {:.1f} pixels to either side\n", o.result.noise, o.result.radius);
+    fmt::print("\nnoise of colors {:.2f}, filter {:.1f} pixels to either side, {:.1f} for color\n", o.result.noise,
+               o.result.radius, o.result.color_radius);
   }
   if (!o.gain) return;
   fmt::print("{:>22} {:>10} {:>10}   {} pixels of hair\n", "", "before", "after", o.gain->pixels);
@@ -145,10 +146,9 @@ void print_table(const Outcome& o, bool stats) {
 }
 
 void print_json(const DenoiseVerb& verb, const Outcome& o) {
-  Json j{{"outputs", verb.scene.outputs},    {"width", o.result.linear.width},
-         {"height", o.result.linear.height}, {"hair_pixels", o.result.hair_pixels},
-         {"strands", o.result.strands},      {"noise", o.result.noise},
-         {"radius", o.result.radius}};
+  Json j{{"outputs", verb.scene.outputs},       {"width", o.result.linear.width},       {"height", o.result.linear.height},
+         {"hair_pixels", o.result.hair_pixels}, {"strands", o.result.strands},          {"noise", o.result.noise},
+         {"radius", o.result.radius},           {"color_radius", o.result.color_radius}};
   if (o.result.camera_error) j["camera_error"] = *o.result.camera_error;
   if (o.gain)
     for (int i = 0; i < 2; ++i) j[i == 0 ? "before" : "after"] = {{"mse", o.gain->mse[i]}, {"psnr", o.gain->psnr[i]}};

@@ -27,7 +27,8 @@ struct GBufferField {
 const std::vector<GBufferField>& gbuffer_fields();
 
 struct DenoiseSettings {
-  /// Its kernel_size 0 stands for a kernel that the noise of the samples' colors chooses, and is the default here.
+  /// Its kernel_size 0, the default here, stands for kernels of a size in pixels: for opacity what is best for most hair, for color
+  /// more the noisier the samples' colors are. Another one holds for both.
   LinkSettings link = [] {
     LinkSettings settings;
     settings.kernel_size = 0;
@@ -53,8 +54,8 @@ struct DenoiseResult {
   std::size_t strands = 0;      ///< that it shows
   /// Pixels, root of the mean square, between samples and what the camera that was fitted to `position` makes of them.
   std::optional<float> camera_error;
-  float noise = 0;   ///< of the samples' colors: 0 none, 1 as much as strands differ
-  float radius = 0;  ///< r of the filter, pixels; 0 where it has not filtered
+  float noise = 0;                     ///< of the samples' colors: 0 none, 1 as much as strands differ
+  float radius = 0, color_radius = 0;  ///< r of the filter for opacity and for color, pixels; 0 where it has not filtered
   std::vector<StageStat> stats;
 };
 

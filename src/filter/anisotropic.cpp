@@ -68,4 +68,13 @@ Matte filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel) {
   return out;
 }
 
+Matte filter_apart(const Matte& m, const AnisotropicKernel& opacity, const AnisotropicKernel& color) {
+  Matte result = filter_anisotropic(m, color);
+  if (m.exact_coverage || color.radius <= opacity.radius) return result;
+  const Matte narrow = filter_anisotropic(m, opacity);
+  result.exact_coverage = true;
+  m.hair.parallel_for_each([&](int x, int y) { result.at(x, y).coverage = narrow.at(x, y).alpha; });
+  return result;
+}
+
 }  // namespace pelage

@@ -34,4 +34,8 @@ AnisotropicKernel kernel_for(const PixelBox& hair, const LinkSettings& settings)
 /// instruction set. O(hair pixels · pixels inside the ellipse).
 Matte filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel);
 
+/// Opacity by one kernel, color by another one that is as wide or wider: what covers a pixel is as certain as ever where light is
+/// noisy, and its edges stay. Exact opacity is handed on. m.border ≥ the reach of both.
+Matte filter_apart(const Matte& m, const AnisotropicKernel& opacity, const AnisotropicKernel& color);
+
 }  // namespace pelage

@@ -160,6 +160,22 @@ TEST(Anisotropic, LeavesHairThatIsSeenEndOnAlone) {
   EXPECT_EQ(std::memcmp(&out.at(4, 4), &m.at(4, 4), sizeof(MattePixel)), 0);
 }
 
+TEST(Anisotropic, FiltersColorAndOpacityApart) {
+  const Matte m = random_matte(40, 30, 0.6f);
+  const AnisotropicKernel narrow = kernel(2, 0.5f), wide = kernel(7, 0.5f);
+  const Matte apart = filter_apart(m, narrow, wide), opacity = filter_anisotropic(m, narrow),
+              color = filter_anisotropic(m, wide);
+  EXPECT_TRUE(apart.exact_coverage);
+  m.hair.for_each(0, 30, [&](int x, int y) {
+    EXPECT_EQ(apart.at(x, y).coverage, opacity.at(x, y).alpha);
+    EXPECT_EQ(apart.at(x, y).r, color.at(x, y).r);
+    EXPECT_EQ(apart.at(x, y).alpha, color.at(x, y).alpha);
+  });
+  const Matte alike = filter_apart(m, wide, wide);
+  EXPECT_FALSE(alike.exact_coverage);
+  m.hair.for_each(0, 30, [&](int x, int y) { EXPECT_EQ(alike.at(x, y).alpha, color.at(x, y).alpha); });
+}
+
 TEST(Anisotropic, TakesOddSizesAndEmptyPictures) {
   for (const auto& [w, h] : {std::pair{1, 1}, std::pair{1, 40}, std::pair{67, 1}, std::pair{17, 9}})
     for (const float hair : {0.f, 0.5f, 1.f}) {

@@ -222,10 +222,16 @@ DenoiseResult denoise(const Image& gbuffer, const DenoiseSettings& settings, con
   });
   RenderSettings how;
   how.link = settings.link;
-  if (how.link.filter && how.link.kernel_size == 0)
-    how.link = with_radius(how.link, radius_for_noise(result.noise, side), input.layer);
-  if (how.link.filter && result.hair_pixels > 0) result.radius = kernel_for(screen_box(input.layer), how.link).radius;
-  result.linear = link_and_filter(std::move(input), *curves, how, stages);
+  float color_scale = 1;
+  if (how.link.filter && how.link.kernel_size == 0) {
+    const float clean = radius_for_noise(0, side);
+    how.link = with_radius(how.link, clean, input.layer), color_scale = radius_for_noise(result.noise, side) / clean;
+  }
+  if (how.link.filter && result.hair_pixels > 0) {
+    result.radius = kernel_for(screen_box(input.layer), how.link).radius;
+    result.color_radius = color_scale * result.radius;
+  }
+  result.linear = link_and_filter(std::move(input), *curves, how, stages, nullptr, color_scale);
   result.stats = stages.take();
   return result;
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rng.h"
 #include "frame/camera_view.h"
 #include "raster/test_scene.h"
 
@@ -329,6 +330,25 @@ TEST(Denoise, TransparentBackgroundStaysTransparent) {
   for (std::size_t i = 3; i < result.pixels.size(); i += 4)
     got += static_cast<double>(result.pixels[i]), wanted += static_cast<double>(expected.pixels[i]);
   EXPECT_NEAR(got, wanted, 0.01 * wanted);
+}
+
+// The noisier the colors, the wider they are smoothed, and no less sharp is what they cover.
+TEST(Denoise, NoiseOfColorDoesNotBlurOpacity) {
+  Scene scene = thin_scene();
+  scene.settings.transparent_background = true;
+  const Image clean = render_gbuffer(scene);
+  Image noisy = clean;
+  Rng rng(1, 7);
+  for (std::size_t p = 0; p < noisy.pixels.size(); p += noisy.channel_count())
+    if (const float factor = rng.uniform() < 0.1f ? 10.f : 0.f; noisy.pixels[p + channel(noisy, "strand")] != 0)
+      for (std::size_t c = 0; c < 3; ++c) noisy.pixels[p + c] *= factor;
+  const DenoiseResult of_clean = denoise(clean), of_noisy = denoise(noisy);
+  EXPECT_LT(of_clean.noise, 0.3f);
+  EXPECT_GT(of_noisy.noise, 0.7f);
+  EXPECT_EQ(of_noisy.radius, of_clean.radius);
+  EXPECT_GT(of_noisy.color_radius, 1.5f * of_noisy.radius);
+  for (std::size_t i = 3; i < of_clean.linear.pixels.size(); i += 4)
+    EXPECT_NEAR(of_clean.linear.pixels[i], of_noisy.linear.pixels[i], 1e-5f);
 }
 
 TEST(Denoise, ExactCoverageGivesTheOpacity) {

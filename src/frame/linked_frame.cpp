@@ -144,7 +144,7 @@ LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage
 }
 
 Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
-                      Buffer<float>* nearest) {
+                      Buffer<float>* nearest, float color_scale) {
   StrandLayer& layer = input.layer;
   const std::uint64_t pixels = layer.visibility.size();
   Links links;
@@ -155,10 +155,12 @@ Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderS
     });
   Matte matte;
   AlphaStats stats;
-  AnisotropicKernel kernel;
+  AnisotropicKernel kernel, color_kernel;
   stages.run("filter.alpha", "pixels", [&](const Progress&) {
     kernel = kernel_for(screen_box(layer), settings.link);
-    matte = fix_alpha(layer, links, settings.link.alpha, kernel.reach(), stats);
+    color_kernel = kernel;
+    color_kernel.radius = std::min(color_scale * kernel.radius, AnisotropicKernel::kMostRadius);
+    matte = fix_alpha(layer, links, settings.link.alpha, color_kernel.reach(), stats);
     return StageWork{pixels, matte.bytes()};
   });
   if (stats.overflow > 0) stages.note("filter.overflow", "fills", {stats.overflow, 0});
@@ -166,7 +168,7 @@ Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderS
   if (settings.link.filter)
     stages.run("filter.anisotropic", "pixels", [&](const Progress&) {
       extend_tangents(matte, layer);
-      matte = filter_anisotropic(matte, kernel);
+      matte = filter_apart(matte, kernel, color_kernel);
       return StageWork{pixels, matte.bytes()};
     });
   Image linear;

@@ -26,8 +26,9 @@ inline constexpr int kLayerMargin = 16;  ///< a walk may leave the box of all sa
 void place_layer(const PixelMask& hair, StrandLayer& layer);
 
 /// Links, alpha fix and filter as scene.settings.link says: R, G, B, A, linear, premultiplied, of the size of the picture.
-/// `nearest`, where given, becomes [h·w]: camera z of what a pixel's first visibility pixel shows after linking.
+/// `nearest`, where given, becomes [h·w]: camera z of what a pixel's first visibility pixel shows after linking. The filter's kernel
+/// for color is `color_scale` ≥ 1 times as large as that for opacity.
 Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
-                      Buffer<float>* nearest = nullptr);
+                      Buffer<float>* nearest = nullptr, float color_scale = 1);
 
 }  // namespace pelage
