@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "assemble/assemble.h"
 #include "bench.h"
@@ -33,6 +34,7 @@ struct Linkable {
   Linkable(const std::string& groom, int width, int height) : scene(groom_scene(groom)) {
     add_default_lights(scene);
     scene.settings.width = width, scene.settings.height = height;
+    scene.settings.subdivisions = RenderSettings().subdivisions;  // the curves that a picture shows, not their chords
     view = make_camera_view(scene.camera, width, height);
     numbering = number_segments(scene, view);
     const MeshTracer meshes(scene.meshes);
@@ -41,16 +43,23 @@ struct Linkable {
     layer = render_strand_layer({scene, meshes, rig, view, numbering}, 1, false, stages).layer;
   }
 
+  struct Repaired {
+    Matte matte;
+    Buffer<Vec4> color;
+  };
   /// Links, alpha fix, filter; the layer is as before afterwards.
-  Matte repair() {
+  Repaired repair() {
     const Links links = link_strands(layer, GroomCurves(scene, view), scene.settings.link);
     const AnisotropicKernel kernel = kernel_for(screen_box(layer), scene.settings.link);
     AlphaStats stats;
     Matte matte = fix_alpha(layer, links, LinkAlpha::kCount, kernel.reach(), stats);
     extend_tangents(matte, layer);
-    for (const Fill& fill : links.fills)
+    for (const Fill& fill : links.fills) {
       layer.visibility[fill.pixel] = {}, layer.depth[fill.pixel] = INFINITY, layer.color[fill.pixel] = {};
-    return filter_anisotropic(matte, kernel);
+      layer.hair.remove(fill.pixel);
+    }
+    Buffer<Vec4> color = filter_anisotropic(matte, kernel);
+    return {std::move(matte), std::move(color)};
   }
 };
 
@@ -60,15 +69,16 @@ Workload repair_workload(const std::string& groom, int width, int height) {
   const auto hair = std::count_if(input->layer.visibility.begin(), input->layer.visibility.end(),
                                   [](const VisibilitySample& v) { return v.is_hair(); });
   const auto check = [input]() -> std::string {
-    const Matte many = input->repair();
+    const Linkable::Repaired many = input->repair();
     const int threads = thread_count();
     set_thread_count(1);
-    const Matte one = input->repair();
+    const Linkable::Repaired one = input->repair();
     set_thread_count(threads);
-    bool same = true;
-    one.hair.for_each(0, static_cast<std::size_t>(one.height),
-                      [&](int x, int y) { same = same && one.at(x, y).g == many.at(x, y).g; });
-    return same && one.hair.count() == many.hair.count() ? "" : "not the bits of one thread";
+    bool same = one.matte.hair.count() == many.matte.hair.count();
+    one.matte.hair.for_each(0, static_cast<std::size_t>(one.matte.height), [&](int x, int y) {
+      same = same && one.color[one.matte.index(x, y)] == many.color[one.matte.index(x, y)];
+    });
+    return same ? "" : "not the bits of one thread";
   };
   return {.check = check, .run = [input] { input->repair(); }, .items = static_cast<double>(hair)};
 }

@@ -1,5 +1,6 @@
 #include "filter/alpha_fix.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -7,20 +8,23 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "filter/pixel_mask.h"
+#include "core/pixel_mask.h"
 #include "filter/segment_counts.h"
 
 namespace pelage {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 8, kFillsPerTask = 1024;
+constexpr std::size_t kFillsPerTask = 1024;
 
-/// f(source, first, last) for the fills of each source; those of one follow each other.
+/// f(source, its fills) for each source; the fills of one follow each other.
 template <class F>
-void for_each_source(std::span<const Fill> fills, std::size_t begin, std::size_t end, const F& f) {
-  for (std::size_t i = begin, last = begin; i < end; i = last) {
-    while (last < end && fills[last].source == fills[i].source) ++last;
-    f(fills[i].source, i, last);
+void for_each_source(std::span<const Fill> fills, const F& f) {
+  while (!fills.empty()) {
+    const std::uint32_t source = fills.front().source;
+    const auto end = std::find_if(fills.begin(), fills.end(), [&](const Fill& fill) { return fill.source != source; });
+    const auto count = static_cast<std::size_t>(end - fills.begin());
+    f(source, fills.first(count));
+    fills = fills.subspan(count);
   }
 }
 
@@ -33,44 +37,45 @@ class SegmentAlpha {
   void count(AlphaStats& stats) {
     insert(stats);
     // Filled pixels count with the segment that they were filled from, even where they lie on the next one.
-    parallel_for(links_.fills.size(), kFillsPerTask, [&](std::size_t begin, std::size_t end) {
-      for_each_source(links_.fills, begin, end, [&](std::uint32_t source, std::size_t first, std::size_t last) {
-        SegmentCounts::Slot* slot = counts_.find(segment_of(source));
-        std::uint32_t filled = 0;
-        for (std::size_t i = first; i < last; ++i) {
-          slots_[links_.fills[i].pixel] = slot;
-          filled += layer_.visibility[links_.fills[i].pixel].is_filled();
-        }
-        if (filled > 0) SegmentCounts::add_filled(*slot, filled);
-      });
+    parallel_for_fills([&](std::uint32_t source, std::span<const Fill> fills) {
+      const std::uint32_t slot = counts_.find(segment_of(source));
+      if (slot == SegmentCounts::kNone) return;  // taken back
+      for (const Fill& fill : fills) slots_[fill.pixel] = slot;
+      SegmentCounts::add_filled(counts_[slot], static_cast<std::uint32_t>(fills.size()));
     });
-    hair_pixels(layer_).parallel_for_each([&](int x, int y) {
+    layer_.hair.parallel_for_each([&](int x, int y) {
       const std::size_t p = static_cast<std::size_t>(y) * static_cast<std::size_t>(layer_.width) + static_cast<std::size_t>(x);
       const VisibilitySample& v = layer_.visibility[p];
       if (v.is_filled()) return;
-      SegmentCounts::Slot* slot = slots_[p] = counts_.find(v.primitive());
-      if (slot) SegmentCounts::add_hit(*slot, layer_.color[p]);
+      const std::uint32_t slot = slots_[p] = counts_.find(v.primitive());
+      if (slot != SegmentCounts::kNone) SegmentCounts::add_hit(counts_[slot], layer_.color[p]);
     });
     stats.segments = counts_.used();
   }
 
   /// α of pixel p, which shows hair, and its color, which stays as it is where nothing is linked.
   float alpha(std::size_t p, Vec3& color) const {
-    const SegmentCounts::Slot* slot = slots_[p];
-    if (!slot) return 1;
-    color = SegmentCounts::mean_color(*slot);
-    return static_cast<float>(slot->hit) / static_cast<float>(slot->hit + slot->filled);
+    if (slots_[p] == SegmentCounts::kNone) return 1;
+    const SegmentCounts::Slot& slot = counts_[slots_[p]];
+    color = SegmentCounts::mean_color(slot);
+    return static_cast<float>(slot.hit) / static_cast<float>(slot.hit + slot.filled);
   }
 
  private:
   std::uint32_t segment_of(std::uint32_t pixel) const { return layer_.visibility[pixel].primitive(); }
 
+  /// f(source, fills) in parallel; some sources come twice.
+  template <class F>
+  void parallel_for_fills(const F& f) const {
+    parallel_for(links_.fills.size(), kFillsPerTask, [&](std::size_t begin, std::size_t end) {
+      for_each_source(std::span(links_.fills).subspan(begin, end - begin), f);
+    });
+  }
+
   void insert(AlphaStats& stats) {
     std::atomic<bool> full{false};
-    parallel_for(links_.fills.size(), kFillsPerTask, [&](std::size_t begin, std::size_t end) {
-      for_each_source(links_.fills, begin, end, [&](std::uint32_t source, std::size_t, std::size_t) {
-        if (!counts_.insert(segment_of(source))) full = true;
-      });
+    parallel_for_fills([&](std::uint32_t source, std::span<const Fill>) {
+      if (!counts_.insert(segment_of(source))) full = true;
     });
     if (!full) return;
     // Which segment finds no place depends on the order: by one thread, fill by fill, it does not change.
@@ -78,6 +83,7 @@ class SegmentAlpha {
     for (const Fill& fill : links_.fills) {
       if (counts_.insert(segment_of(fill.source))) continue;
       layer_.visibility[fill.pixel] = {};
+      layer_.hair.remove(fill.pixel);
       layer_.depth[fill.pixel] = std::numeric_limits<float>::infinity();
       layer_.color[fill.pixel] = {};
       ++stats.overflow;
@@ -87,7 +93,7 @@ class SegmentAlpha {
   StrandLayer& layer_;
   const Links& links_;
   SegmentCounts counts_;
-  Buffer<SegmentCounts::Slot*> slots_;  // [h·w] of what pixels with hair count with, null for nothing linked
+  Buffer<std::uint32_t> slots_;  // [h·w] of what pixels with hair count with, kNone for nothing linked
 };
 
 /// The visibility pixel that screen pixel (x, y) begins with.
@@ -101,52 +107,64 @@ std::size_t sample_of(const StrandLayer& layer, std::size_t corner, std::size_t 
   return corner + s / side * static_cast<std::size_t>(layer.width) + s % side;
 }
 
-/// hair(p, color) gives the α of visibility pixel p, which shows hair, and may change its color.
+/// Fills screen pixel (x, y): hair(p, color) gives the α of visibility pixel p, which shows hair, and may change its color.
 template <class Hair>
-MattePixel resolve_pixel(const StrandLayer& layer, std::size_t corner, const Hair& hair) {
+void resolve_pixel(const StrandLayer& layer, int x, int y, const Hair& hair, Matte& matte) {
   const auto samples = static_cast<std::size_t>(layer.side * layer.side);
+  const std::size_t corner = corner_of(layer, x, y), out = matte.index(x, y);
   const float share = 1 / static_cast<float>(samples);
   Vec3 sum;
   Vec2 tangent;
   MeanDirection direction;
-  MattePixel m;
-  bool seen = false;
+  float alpha = 0;
   for (std::size_t s = 0; s < samples; ++s) {
     const std::size_t p = sample_of(layer, corner, s);
-    if (!layer.coverage.empty()) m.coverage += layer.coverage[p] * share;
     if (!layer.visibility[p].is_hair()) continue;
-    seen = true;
     Vec3 color = layer.color[p];
     const float a = hair(p, color);
-    sum += color * a, m.alpha += a;
+    sum += color * a, alpha += a;
     tangent = layer.visibility[p].tangent();
     if (samples > 1) direction.add(tangent);
   }
-  m.r = sum.x * share, m.g = sum.y * share, m.b = sum.z * share, m.alpha *= share;
-  if (seen) m.lie(samples > 1 ? direction.mean() : tangent);
-  return m;
+  matte.color[out] = {sum.x * share, sum.y * share, sum.z * share, alpha * share};
+  matte.lie(x, y, samples > 1 ? direction.mean() : tangent);
+}
+
+/// Matte::coverage: means over the visibility pixels of a screen pixel.
+void average_coverage(const StrandLayer& layer, Matte& matte) {
+  const auto samples = static_cast<std::size_t>(layer.side * layer.side);
+  parallel_for(static_cast<std::size_t>(matte.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y)
+      for (int x = 0; x < matte.width; ++x) {
+        float sum = 0;
+        for (std::size_t s = 0; s < samples; ++s) sum += layer.coverage[sample_of(layer, corner_of(layer, x, y), s)];
+        matte.coverage[matte.index(x, y)] = sum / static_cast<float>(samples);
+      }
+  });
+}
+
+/// The screen pixels that have hair in one of their visibility pixels.
+PixelMask screen_hair(const StrandLayer& layer, int width, int height) {
+  if (layer.side == 1) return layer.hair;
+  return {width, height, [&](std::size_t p) {
+            const int x = static_cast<int>(p % static_cast<std::size_t>(width)) * layer.side,
+                      y = static_cast<int>(p / static_cast<std::size_t>(width)) * layer.side;
+            for (int j = y; j < y + layer.side; ++j)
+              if (layer.hair.bits(x, j, layer.side) != 0) return true;
+            return false;
+          }};
 }
 
 template <class Hair>
 void resolve_hair(const StrandLayer& layer, Matte& matte, const Hair& hair) {
-  matte.clear();
-  parallel_for(static_cast<std::size_t>(matte.height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
-    for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y)
-      for (int x = 0; x < matte.width; ++x) {
-        const std::size_t corner = corner_of(layer, x, y);
-        bool any = false;
-        for (std::size_t s = 0; s < static_cast<std::size_t>(layer.side * layer.side); ++s)
-          any = any || layer.visibility[sample_of(layer, corner, s)].is_hair();
-        if (any || matte.exact_coverage) matte.at(x, y) = resolve_pixel(layer, corner, hair);
-        if (any) matte.hair.add(x, y);
-      }
-  });
+  matte.hair = screen_hair(layer, matte.width, matte.height);
+  matte.hair.parallel_for_each([&](int x, int y) { resolve_pixel(layer, x, y, hair, matte); });
 }
 
 }  // namespace
 
 std::size_t segment_table_size(const StrandLayer& layer, const Links& links) {
-  const PixelBox box = hair_pixels(layer).box();
+  const PixelBox box = layer.hair.box();
   const std::size_t pixels = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
   return std::max<std::size_t>(1, std::min((pixels * 6 + 4) / 5, 2 * links.walks));
 }
@@ -155,12 +173,13 @@ Matte fix_alpha(StrandLayer& layer, const Links& links, LinkAlpha alpha, int bor
                 AlphaStats& stats) {
   PELAGE_CHECK_EQ(layer.width % layer.side, 0);
   PELAGE_CHECK_EQ(layer.height % layer.side, 0);
-  Matte matte(layer.width / layer.side, layer.height / layer.side, border);
+  PELAGE_CHECK(layer.hair.width() == layer.width && layer.hair.height() == layer.height);
+  Matte matte(layer.width / layer.side, layer.height / layer.side, border, alpha == LinkAlpha::kCoverage);
   matte.left = layer.left / layer.side, matte.top = layer.top / layer.side;
   if (alpha == LinkAlpha::kCoverage) {
     PELAGE_CHECK_EQ(layer.coverage.size(), layer.visibility.size());
-    matte.exact_coverage = true;
     resolve_hair(layer, matte, [&](std::size_t p, Vec3&) { return layer.coverage[p]; });
+    average_coverage(layer, matte);
     return matte;
   }
   SegmentAlpha segments(layer, links, table_size);

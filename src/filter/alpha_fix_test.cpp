@@ -45,21 +45,23 @@ Linked random_links(std::uint32_t seed, int width, int height, int side = 1, std
     l.links.fills.push_back({p, source});
   }
   l.links.walks = l.links.fills.size();
+  mark_hair(l.layer);
   return l;
 }
 
 constexpr int kBorder = 3;
 
-double sum(const Matte& m, float MattePixel::*channel) {
+/// Over all pixels, those of the border too.
+double sum(const Matte& m, float Vec4::*channel) {
   double s = 0;
-  for (int y = -m.border; y < m.height + m.border; ++y)
-    for (int x = -m.border; x < m.width + m.border; ++x) s += static_cast<double>(m.at(x, y).*channel);
+  for (const Vec4& c : m.color) s += static_cast<double>(c.*channel);
   return s;
 }
 
-const MattePixel& pixel(const Matte& m, std::size_t p) {
+/// Where screen pixel p lies in a matte.
+std::size_t place(const Matte& m, std::size_t p) {
   const auto width = static_cast<std::size_t>(m.width);
-  return m.at(static_cast<int>(p % width), static_cast<int>(p / width));
+  return m.index(static_cast<int>(p % width), static_cast<int>(p / width));
 }
 
 // Eq. 8 by maps and loops over pixels.
@@ -83,15 +85,15 @@ TEST(AlphaFix, IsHitOverAllOfASegment) {
     for (std::uint32_t p = 0; p < l.layer.visibility.size(); ++p) {
       const VisibilitySample& v = l.layer.visibility[p];
       if (!v.is_hair()) {
-        EXPECT_EQ(pixel(matte, p).alpha, 0.f);
+        EXPECT_EQ(matte.color[place(matte, p)].w, 0.f);
         continue;
       }
       const std::uint32_t segment = v.is_filled() ? segment_of_fill[p] : v.primitive();
       const bool linked = filled.count(segment);
       const float m = static_cast<float>(hit[segment]), n = linked ? static_cast<float>(filled[segment]) : 0;
-      EXPECT_FLOAT_EQ(pixel(matte, p).alpha, m / (m + n));
+      EXPECT_FLOAT_EQ(matte.color[place(matte, p)].w, m / (m + n));
       const Vec3 c = linked ? color[segment] / m : l.layer.color[p];
-      EXPECT_NEAR(pixel(matte, p).g, c.y * m / (m + n), 1e-5f);
+      EXPECT_NEAR(matte.color[place(matte, p)].y, c.y * m / (m + n), 1e-5f);
     }
   }
 }
@@ -109,9 +111,9 @@ TEST(AlphaFix, KeepsTheEnergyOfTheSamples) {
       const Matte matte = fix_alpha(l.layer, l.links, LinkAlpha::kCount, kBorder, stats);
       EXPECT_EQ(matte.width, 36 / side);
       const double pixels = side * side;
-      EXPECT_NEAR(sum(matte, &MattePixel::r) * pixels, red, 1e-4 * red);
-      EXPECT_NEAR(sum(matte, &MattePixel::g) * pixels, green, 1e-4 * green);
-      EXPECT_NEAR(sum(matte, &MattePixel::alpha) * pixels, hits, 1e-4 * hits);
+      EXPECT_NEAR(sum(matte, &Vec4::x) * pixels, red, 1e-4 * red);
+      EXPECT_NEAR(sum(matte, &Vec4::y) * pixels, green, 1e-4 * green);
+      EXPECT_NEAR(sum(matte, &Vec4::w) * pixels, hits, 1e-4 * hits);
     }
 }
 
@@ -128,7 +130,7 @@ TEST(AlphaFix, AFullTableTakesFillsBackAndCountsThem) {
     double hits = 0;
     for (const VisibilitySample& v : l.layer.visibility) filled += v.is_filled(), hits += v.is_hair() && !v.is_filled();
     EXPECT_EQ(filled + stats.overflow, fills);
-    EXPECT_NEAR(sum(matte, &MattePixel::alpha), hits, 1e-3 * hits);  // energy does not depend on the table
+    EXPECT_NEAR(sum(matte, &Vec4::w), hits, 1e-3 * hits);  // energy does not depend on the table
     set_thread_count(0);
   }
 }
@@ -149,8 +151,8 @@ TEST(AlphaFix, CoverageIsTheAlpha) {
           seen += l.layer.coverage[static_cast<std::size_t>(p)] / 4;
       }
       const auto out = static_cast<std::size_t>(10 * y + x);
-      EXPECT_NEAR(pixel(matte, out).coverage, mean, 1e-6f);
-      EXPECT_NEAR(pixel(matte, out).alpha, seen, 1e-6f);
+      EXPECT_NEAR(matte.coverage[place(matte, out)], mean, 1e-6f);
+      EXPECT_NEAR(matte.color[place(matte, out)].w, seen, 1e-6f);
     }
 }
 
@@ -166,8 +168,12 @@ TEST(AlphaFix, SameBitsForAnyThreads) {
   const Matte one = fixed(1);
   for (const int threads : {2, 5}) {
     const Matte many = fixed(threads);
-    const std::size_t bytes = one.stride() * static_cast<std::size_t>(one.height + 2 * kBorder) * sizeof(MattePixel);
-    EXPECT_EQ(std::memcmp(&one.at(-kBorder, -kBorder), &many.at(-kBorder, -kBorder), bytes), 0);
+    EXPECT_EQ(std::memcmp(one.color.data(), many.color.data(), one.color.size() * sizeof(Vec4)), 0);
+    EXPECT_EQ(std::memcmp(one.weight.data(), many.weight.data(), one.weight.size() * sizeof(float)), 0);
+    one.hair.for_each(0, static_cast<std::size_t>(one.height), [&](int x, int y) {
+      EXPECT_TRUE(many.hair.contains(x, y));
+      EXPECT_EQ(one.tangent[one.index(x, y)], many.tangent[one.index(x, y)]);
+    });
   }
 }
 
@@ -176,10 +182,12 @@ TEST(SegmentTable, HasTheSizeOfTheBoxOrOfTheWalks) {
   layer.width = 10, layer.height = 8;
   layer.visibility.resize(80);
   layer.visibility.fill({});
+  mark_hair(layer);
   Links links;
   links.walks = 1000;
   EXPECT_EQ(segment_table_size(layer, links), 1u);
   layer.visibility[2 * 10 + 3] = layer.visibility[6 * 10 + 7] = pack_visibility({1, 0}, 0, 1, false);
+  mark_hair(layer);
   EXPECT_EQ(segment_table_size(layer, links), 30u);  // 5 × 5 × 1.2
   links.walks = 6;
   EXPECT_EQ(segment_table_size(layer, links), 12u);
@@ -189,13 +197,14 @@ TEST(SegmentCounts, FindsWhatWasInsertedAndNothingElse) {
   SegmentCounts counts(1000);
   for (std::uint32_t k = 0; k < 700; ++k) EXPECT_TRUE(counts.insert(3 * k));
   EXPECT_EQ(counts.used(), 700u);
-  for (std::uint32_t k = 0; k < 2100; ++k) EXPECT_EQ(counts.find(k) != nullptr, k % 3 == 0) << k;
-  SegmentCounts::add_hit(*counts.find(33), {1, 2, 3});
-  SegmentCounts::add_hit(*counts.find(33), {2, 4, 0});
-  EXPECT_EQ(counts.find(33)->hit, 2u);
-  EXPECT_EQ(SegmentCounts::mean_color(*counts.find(33)), Vec3(1.5f, 3, 1.5f));
+  for (std::uint32_t k = 0; k < 2100; ++k) EXPECT_EQ(counts.find(k) != SegmentCounts::kNone, k % 3 == 0) << k;
+  SegmentCounts::Slot& slot = counts[counts.find(33)];
+  SegmentCounts::add_hit(slot, {1, 2, 3});
+  SegmentCounts::add_hit(slot, {2, 4, 0});
+  EXPECT_EQ(counts[counts.find(33)].hit, 2u);
+  EXPECT_EQ(SegmentCounts::mean_color(slot), Vec3(1.5f, 3, 1.5f));
   counts.clear();
-  EXPECT_EQ(counts.find(33), nullptr);
+  EXPECT_EQ(counts.find(33), SegmentCounts::kNone);
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <cstdint>
+#include <span>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -12,21 +13,48 @@
 namespace pelage {
 namespace {
 
-/// Sums of all of MattePixel, as two vectors of four that any compiler knows how to add.
-struct Sums {
-  float value[8] = {};
-  void add(const MattePixel& m, float weight) {
-    const float* const p = &m.r;
-    for (int c = 0; c < 8; ++c) value[c] += weight * p[c];
+/// A weighted sum of pixels, four floats at a time.
+struct PixelSum {
+  float color[4] = {}, weight = 0;
+
+  void add(const Vec4& c, float w) {
+    color[0] += c.x, color[1] += c.y, color[2] += c.z, color[3] += c.w;
+    weight += w;
   }
-  /// Color and opacity of the weighted mean, the rest as it is in `here`.
-  MattePixel mean(const MattePixel& here) const {
-    MattePixel m = here;
-    const float scale = 1 / value[4];
-    m.r = value[0] * scale, m.g = value[1] * scale, m.b = value[2] * scale, m.alpha = value[3] * scale;
-    return m;
+  void add(const Vec4& c, float hair, float w) {
+    color[0] += c.x * w, color[1] += c.y * w, color[2] += c.z * w, color[3] += c.w * w;
+    weight += hair * w;
   }
 };
+
+Vec4 mean(const PixelSum& a, const PixelSum& b) {
+  const float scale = 1 / (a.weight + b.weight);
+  return {(a.color[0] + b.color[0]) * scale, (a.color[1] + b.color[1]) * scale, (a.color[2] + b.color[2]) * scale,
+          (a.color[3] + b.color[3]) * scale};
+}
+
+/// The mean of all under a kernel whose weights are 1. Pixels without hair are 0 in all, so that nobody has to ask.
+Vec4 flat_mean(const Vec4* color, const float* weight, const KernelTaps& taps) {
+  PixelSum before, after;
+  before.add(*color, *weight);
+  for (const std::int32_t offset : taps.offset) {
+    before.add(color[-offset], weight[-offset]);
+    after.add(color[offset], weight[offset]);
+  }
+  return mean(before, after);
+}
+
+Vec4 weighted_mean(const Vec4* color, const float* weight, std::span<const std::int32_t> offsets, const float* before_weights,
+                   const float* after_weights) {
+  PixelSum before, after;
+  before.add(*color, *weight);
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const std::int32_t offset = offsets[i];
+    before.add(color[-offset], weight[-offset], before_weights[i]);
+    after.add(color[offset], weight[offset], after_weights[i]);
+  }
+  return mean(before, after);
+}
 
 }  // namespace
 
@@ -39,41 +67,45 @@ AnisotropicKernel kernel_for(const PixelBox& hair, const LinkSettings& settings)
   return k;
 }
 
-Matte filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel) {
+Buffer<Vec4> filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel) {
   PELAGE_CHECK(kernel.radius >= 0 && kernel.radius <= AnisotropicKernel::kMostRadius);
   PELAGE_CHECK(m.border >= kernel.reach());
-  const KernelTaps all_taps(kernel, m.stride());
+  const KernelTable table(kernel, m.stride());
   const bool by_color = !std::isinf(kernel.sigma_color);
-  Matte out(m.width, m.height, 0);
-  out.left = m.left, out.top = m.top, out.exact_coverage = m.exact_coverage, out.hair = m.hair;
+  Buffer<Vec4> out(m.color.size());
   parallel_for(static_cast<std::size_t>(m.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
-    std::vector<float> weights(by_color ? all_taps.most() + kColorWeightPadding : 0);
+    ColorWeights colors(by_color ? table.most_pairs() : 0);
     m.hair.for_each(first, last, [&](int x, int y) {
-      const MattePixel& here = m.at(x, y);
-      if (here.tangent() == Vec2()) {
-        out.at(x, y) = here;
+      const std::size_t p = m.index(x, y);
+      const Vec4* const color = &m.color[p];
+      const float* const weight = &m.weight[p];
+      if (m.tangent[p] == Vec2()) {
+        out[p] = *color;
         return;
       }
-      const auto taps = all_taps.of(here.tangent());
-      Sums sums;
-      if (by_color) {
-        color_weights(&here, taps, all_taps.terms(), weights);
-        for (std::size_t i = 0; i < taps.size(); ++i) sums.add((&here)[taps[i].offset], weights[i]);
+      const KernelTaps taps = table.along(m.tangent[p]);
+      if (table.flat()) {
+        out[p] = flat_mean(color, weight, taps);
+      } else if (by_color) {
+        colors.weigh(color, taps, table.terms());
+        out[p] = weighted_mean(color, weight, taps.offset, colors.before.data(), colors.after.data());
       } else {
-        for (const KernelTap& tap : taps) sums.add((&here)[tap.offset], tap.weight);
+        out[p] = weighted_mean(color, weight, taps.offset, taps.weight.data(), taps.weight.data());
       }
-      out.at(x, y) = sums.mean(here);
     });
   });
   return out;
 }
 
-Matte filter_apart(const Matte& m, const AnisotropicKernel& opacity, const AnisotropicKernel& color) {
-  Matte result = filter_anisotropic(m, color);
-  if (m.exact_coverage || color.radius <= opacity.radius) return result;
-  const Matte narrow = filter_anisotropic(m, opacity);
-  result.exact_coverage = true;
-  m.hair.parallel_for_each([&](int x, int y) { result.at(x, y).coverage = narrow.at(x, y).alpha; });
+Buffer<Vec4> filter_apart(const Matte& m, const AnisotropicKernel& opacity, const AnisotropicKernel& color) {
+  Buffer<Vec4> result = filter_anisotropic(m, color);
+  if (!m.coverage.empty() || color.radius <= opacity.radius) return result;
+  const Buffer<Vec4> narrow = filter_anisotropic(m, opacity);
+  m.hair.parallel_for_each([&](int x, int y) {
+    Vec4& c = result[m.index(x, y)];
+    const float alpha = narrow[m.index(x, y)].w, scale = c.w > 0 ? alpha / c.w : 0;
+    c = {c.x * scale, c.y * scale, c.z * scale, alpha};
+  });
   return result;
 }
 

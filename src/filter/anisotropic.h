@@ -29,13 +29,13 @@ struct AnisotropicKernel {
 /// The kernel of `settings` for hair in this box of screen pixels: r = k·√(Bx·By) with its sides, eq. 13, at most kMostRadius.
 AnisotropicKernel kernel_for(const PixelBox& hair, const LinkSettings& settings);
 
-/// Weighted means (eq. 12) of color and opacity over the hair around every pixel of m.hair; a pixel without a tangent stays as
-/// it is. Directions and coverage are handed on. m.border ≥ kernel.reach(). Same bits for any number of threads and any
+/// Weighted means (eq. 12) of color and opacity over the hair around every pixel of m.hair, at Matte::index(); other pixels are
+/// undefined. A pixel without a tangent stays as it is. m.border ≥ kernel.reach(). Same bits for any number of threads and any
 /// instruction set. O(hair pixels · pixels inside the ellipse).
-Matte filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel);
+Buffer<Vec4> filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel);
 
 /// Opacity by one kernel, color by another one that is as wide or wider: what covers a pixel is as certain as ever where light is
-/// noisy, and its edges stay. Exact opacity is handed on. m.border ≥ the reach of both.
-Matte filter_apart(const Matte& m, const AnisotropicKernel& opacity, const AnisotropicKernel& color);
+/// noisy, and its edges stay. Where the matte has an exact opacity, the picture gets that. m.border ≥ the reach of both.
+Buffer<Vec4> filter_apart(const Matte& m, const AnisotropicKernel& opacity, const AnisotropicKernel& color);
 
 }  // namespace pelage

@@ -16,16 +16,14 @@ namespace {
 constexpr int kBorder = 7;  // the most that a kernel of these tests reaches
 
 Matte random_matte(int width, int height, float hair, std::uint32_t seed = 1) {
-  Matte m(width, height, kBorder);
-  m.clear();
+  Matte m(width, height, kBorder, false);
   Rng rng(4, seed);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       if (!(rng.uniform() < hair)) continue;
       const float alpha = rng.uniform(), angle = 6.2832f * rng.uniform();
-      MattePixel& p = m.at(x, y);
-      p.alpha = alpha, p.r = alpha * rng.uniform(), p.g = alpha * 2 * rng.uniform(), p.b = alpha * rng.uniform();
-      p.lie({std::cos(angle), std::sin(angle)});
+      m.color[m.index(x, y)] = {alpha * rng.uniform(), alpha * 2 * rng.uniform(), alpha * rng.uniform(), alpha};
+      m.lie(x, y, {std::cos(angle), std::sin(angle)});
       m.hair.add(x, y);
     }
   return m;
@@ -38,6 +36,7 @@ StrandLayer bare_layer(int width, int height, int side = 1) {
   const auto n = static_cast<std::size_t>(layer.width * layer.height);
   layer.visibility.resize(n), layer.depth.resize(n);
   layer.visibility.fill({}), layer.depth.fill(INFINITY);
+  mark_hair(layer);
   return layer;
 }
 
@@ -49,26 +48,26 @@ double inverse_square(float sigma) {
 /// cell of directions.
 double filtered_green(const Matte& m, const AnisotropicKernel& k, int x, int y) {
   if (!m.hair.contains(x, y)) return 0;
-  const MattePixel& here = m.at(x, y);
-  const Vec2 tangent = DirectionCells::middle(DirectionCells::cell_of(here.tangent()));
+  const Vec4 here = m.color[m.index(x, y)];
+  const Vec2 tangent = DirectionCells::middle(DirectionCells::cell_of(m.tangent[m.index(x, y)]));
   double sum = 0, weights = 0;
   const double r = std::max(0.5, static_cast<double>(k.radius)), minor = std::max(0.5, r * static_cast<double>(k.aspect));
   for (int j = 0; j < m.height; ++j)
     for (int i = 0; i < m.width; ++i) {
-      const MattePixel& there = m.at(i, j);
+      const Vec4 there = m.color[m.index(i, j)];
       if (!m.hair.contains(i, j) || std::abs(i - x) > static_cast<int>(r) || std::abs(j - y) > static_cast<int>(r)) continue;
       const double dx = i - x, dy = j - y, tx = static_cast<double>(tangent.x), ty = static_cast<double>(tangent.y);
       const double along = dx * tx + dy * ty, across = dx * ty - dy * tx;
       if (along * along / (r * r) + across * across / (minor * minor) > 1) continue;
       const double theta = dx == 0 && dy == 0 ? 0 : std::acos(std::min(1.0, std::abs(along) / std::hypot(dx, dy)));
       double color = 0;
-      for (const auto c : {&MattePixel::r, &MattePixel::g, &MattePixel::b})
+      for (const auto c : {&Vec4::x, &Vec4::y, &Vec4::z})
         color += std::pow(static_cast<double>(there.*c) - static_cast<double>(here.*c), 2);
       const double w =
           std::exp(-(dx * dx + dy * dy) / (r * r) * inverse_square(k.sigma_distance) -
                    theta * theta * inverse_square(k.sigma_angle) - color * inverse_square(k.sigma_color) -
                    along * along * inverse_square(k.sigma_along) / 2 - across * across * inverse_square(k.sigma_across) / 2);
-      sum += w * static_cast<double>(there.g), weights += w;
+      sum += w * static_cast<double>(there.y), weights += w;
     }
   return sum / weights;
 }
@@ -106,9 +105,9 @@ TEST(Anisotropic, IsItsDefinition) {
         kernel(5.2f, 0.6f, INFINITY, INFINITY, INFINITY, 2, 0.7f), kernel(0, 0.3f), kernel(0.9f, 1, 0.1f, 0.1f, 0.9f)})
     for (const float hair : {0.2f, 1.f}) {
       const Matte m = random_matte(23, 19, hair);
-      const Matte out = filter_anisotropic(m, k);
+      const Buffer<Vec4> out = filter_anisotropic(m, k);
       for_each_pixel(m.hair, [&](int x, int y) {
-        EXPECT_NEAR(static_cast<double>(out.at(x, y).g), filtered_green(m, k, x, y), 2e-5)
+        EXPECT_NEAR(static_cast<double>(out[m.index(x, y)].y), filtered_green(m, k, x, y), 2e-5)
             << x << " " << y << " r " << k.radius;
       });
     }
@@ -118,13 +117,11 @@ TEST(Anisotropic, IsItsDefinition) {
 TEST(Anisotropic, SameBitsOnAnyInstructionSet) {
   const Matte m = random_matte(61, 43, 0.7f);
   const AnisotropicKernel k = kernel(6, 0.7f, 0.6f, 0.3f, 0.5f);
-  const Matte slow = filter_anisotropic(m, k);
+  const Buffer<Vec4> slow = filter_anisotropic(m, k);
   for (const std::string& isa : available_isas()) {
     set_isa(isa);
-    const Matte fast = filter_anisotropic(m, k);
-    for_each_pixel(m.hair, [&](int x, int y) {
-      EXPECT_EQ(std::memcmp(&slow.at(x, y), &fast.at(x, y), sizeof(MattePixel)), 0) << isa << x << " " << y;
-    });
+    const Buffer<Vec4> fast = filter_anisotropic(m, k);
+    for_each_pixel(m.hair, [&](int x, int y) { EXPECT_EQ(slow[m.index(x, y)], fast[m.index(x, y)]) << isa << x << " " << y; });
   }
   set_isa("");
 }
@@ -132,57 +129,54 @@ TEST(Anisotropic, SameBitsOnAnyInstructionSet) {
 // What is the same everywhere stays as it is: hair of one color and opacity, whatever its directions.
 TEST(Anisotropic, LeavesUniformHairAlone) {
   Matte m = random_matte(40, 30, 1);
+  for_each_pixel(m.hair, [&](int x, int y) { m.color[m.index(x, y)] = {0.3f, 0.2f, 0.1f, 0.5f}; });
+  const Buffer<Vec4> out = filter_anisotropic(m, kernel(6, 0.3f, 0.5f, 0.5f, 0.9f));
   for_each_pixel(m.hair, [&](int x, int y) {
-    MattePixel& p = m.at(x, y);
-    p.r = 0.3f, p.g = 0.2f, p.b = 0.1f, p.alpha = 0.5f;
-  });
-  const Matte out = filter_anisotropic(m, kernel(6, 0.3f, 0.5f, 0.5f, 0.9f));
-  for_each_pixel(m.hair, [&](int x, int y) {
-    EXPECT_NEAR(out.at(x, y).r, 0.3f, 1e-6f);
-    EXPECT_NEAR(out.at(x, y).alpha, 0.5f, 1e-6f);
+    EXPECT_NEAR(out[m.index(x, y)].x, 0.3f, 1e-6f);
+    EXPECT_NEAR(out[m.index(x, y)].w, 0.5f, 1e-6f);
   });
 }
 
 TEST(Anisotropic, SmoothsAlongAndNotAcross) {
   Matte m = random_matte(31, 31, 1);
-  for_each_pixel(m.hair, [&](int x, int y) { m.at(x, y) = {}, m.at(x, y).lie({1, 0}); });
-  m.at(15, 15).g = 1;
-  const Matte out = filter_anisotropic(m, kernel(5, 0.1f));
-  for_each_pixel(m.hair,
-                 [&](int x, int y) { EXPECT_NEAR(out.at(x, y).g, y == 15 && std::abs(x - 15) <= 5 ? 1 / 11.f : 0, 1e-6f); });
+  for_each_pixel(m.hair, [&](int x, int y) { m.color[m.index(x, y)] = {}, m.lie(x, y, {1, 0}); });
+  m.color[m.index(15, 15)].y = 1;
+  const Buffer<Vec4> out = filter_anisotropic(m, kernel(5, 0.1f));
+  for_each_pixel(
+      m.hair, [&](int x, int y) { EXPECT_NEAR(out[m.index(x, y)].y, y == 15 && std::abs(x - 15) <= 5 ? 1 / 11.f : 0, 1e-6f); });
 }
 
 // Hair without a direction has nothing to be smoothed along.
 TEST(Anisotropic, LeavesHairThatIsSeenEndOnAlone) {
   Matte m = random_matte(9, 9, 1);
-  m.at(4, 4).lie({});
-  const Matte out = filter_anisotropic(m, kernel(3, 1));
-  EXPECT_EQ(std::memcmp(&out.at(4, 4), &m.at(4, 4), sizeof(MattePixel)), 0);
+  m.lie(4, 4, {});
+  const Buffer<Vec4> out = filter_anisotropic(m, kernel(3, 1));
+  EXPECT_EQ(out[m.index(4, 4)], m.color[m.index(4, 4)]);
 }
 
 TEST(Anisotropic, FiltersColorAndOpacityApart) {
-  const Matte m = random_matte(40, 30, 0.6f);
+  Matte m = random_matte(40, 30, 0.6f);
   const AnisotropicKernel narrow = kernel(2, 0.5f), wide = kernel(7, 0.5f);
-  const Matte apart = filter_apart(m, narrow, wide), opacity = filter_anisotropic(m, narrow),
-              color = filter_anisotropic(m, wide);
-  EXPECT_TRUE(apart.exact_coverage);
-  m.hair.for_each(0, 30, [&](int x, int y) {
-    EXPECT_EQ(apart.at(x, y).coverage, opacity.at(x, y).alpha);
-    EXPECT_EQ(apart.at(x, y).r, color.at(x, y).r);
-    EXPECT_EQ(apart.at(x, y).alpha, color.at(x, y).alpha);
+  const Buffer<Vec4> apart = filter_apart(m, narrow, wide), opacity = filter_anisotropic(m, narrow),
+                     color = filter_anisotropic(m, wide);
+  const Buffer<Vec4> alike = filter_apart(m, wide, wide);
+  m.coverage.resize(m.color.size());
+  const Buffer<Vec4> exact = filter_apart(m, narrow, wide);
+  for_each_pixel(m.hair, [&](int x, int y) {
+    const std::size_t p = m.index(x, y);
+    EXPECT_EQ(apart[p].w, opacity[p].w);
+    EXPECT_NEAR(apart[p].x * color[p].w, color[p].x * opacity[p].w, 1e-6f);  // the hair's own color is the wide one
+    EXPECT_EQ(alike[p], color[p]);
+    EXPECT_EQ(exact[p], color[p]);
   });
-  const Matte alike = filter_apart(m, wide, wide);
-  EXPECT_FALSE(alike.exact_coverage);
-  m.hair.for_each(0, 30, [&](int x, int y) { EXPECT_EQ(alike.at(x, y).alpha, color.at(x, y).alpha); });
 }
 
 TEST(Anisotropic, TakesOddSizesAndEmptyPictures) {
   for (const auto& [w, h] : {std::pair{1, 1}, std::pair{1, 40}, std::pair{67, 1}, std::pair{17, 9}})
     for (const float hair : {0.f, 0.5f, 1.f}) {
       const Matte m = random_matte(w, h, hair);
-      const Matte out = filter_anisotropic(m, kernel(4, 0.5f));
-      EXPECT_EQ(out.hair.count(), m.hair.count());
-      for_each_pixel(m.hair, [&](int x, int y) { EXPECT_TRUE(out.at(x, y).r >= 0 && out.at(x, y).alpha <= 1); });
+      const Buffer<Vec4> out = filter_anisotropic(m, kernel(4, 0.5f));
+      for_each_pixel(m.hair, [&](int x, int y) { EXPECT_TRUE(out[m.index(x, y)].x >= 0 && out[m.index(x, y)].w <= 1); });
     }
 }
 
@@ -207,13 +201,13 @@ TEST(MeanDirection, HasNoSign) {
 
 TEST(Matte, TangentsReachIntoGaps) {
   Matte m = random_matte(9, 5, 0);
-  m.at(4, 2).lie({0, 1}), m.hair.add(4, 2);
+  m.lie(4, 2, {0, 1}), m.hair.add(4, 2);
   extend_tangents(m, bare_layer(9, 5), 2);
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < 9; ++x) {
-      EXPECT_EQ(m.at(x, y).weight, std::abs(x - 4) <= 2 ? 1.f : 0.f);
+      EXPECT_EQ(m.weight[m.index(x, y)], std::abs(x - 4) <= 2 ? 1.f : 0.f);
       EXPECT_EQ(m.hair.contains(x, y), std::abs(x - 4) <= 2);
-      EXPECT_EQ(m.at(x, y).tangent_y, std::abs(x - 4) <= 2 ? 1.f : 0.f);
+      EXPECT_TRUE(!m.hair.contains(x, y) || m.tangent[m.index(x, y)] == Vec2(0, 1));
     }
 }
 
@@ -227,7 +221,7 @@ TEST(Matte, GapsAreNotInFrontOfHair) {
       for (int j = 0; j < side; ++j)
         for (int i = 0; i < side; ++i) plane[static_cast<std::size_t>(j * layer.width + x * side + i)] = value;
     };
-    m.at(4, 0).lie({1, 0}), m.hair.add(4, 0);
+    m.lie(4, 0, {1, 0}), m.hair.add(4, 0);
     set(layer.depth, 4, 2);
     for (int x = 0; x < 9; ++x) set(layer.opaque_depth, x, x == 3 || x == 6 ? 1.f : x == 5 ? 3.f : INFINITY);
     extend_tangents(m, layer, 2);
@@ -238,22 +232,18 @@ TEST(Matte, GapsAreNotInFrontOfHair) {
 // Over a bright and over a dark background, of one and of several visibility pixels.
 TEST(Matte, LiesOverWhatIsBehind) {
   const StrandLayer layer = bare_layer(2, 1, 2);
-  Behind behind{4, 2, Buffer<Vec4>(8), {}};
+  Behind behind;
+  behind.width = 4, behind.height = 2, behind.color.resize(8);
   for (std::size_t p = 0; p < 8; ++p) behind.color[p] = p % 4 < 2 ? Vec4(1, 2, 3, 1) : Vec4(0, 0, 0, p % 4 == 2 ? 1 : 0);
-  Matte m(2, 1, 0);
-  m.clear();
-  for (int x = 0; x < 2; ++x) {
-    MattePixel& p = m.at(x, 0);
-    p.r = 0.25f, p.b = 0.5f, p.alpha = 0.5f;
-    m.hair.add(x, 0);
-  }
-  const Image image = lay_over(m, layer, behind, 1);
+  Matte m(2, 1, 0, false);
+  for (int x = 0; x < 2; ++x) m.color[m.index(x, 0)] = {0.25f, 0, 0.5f, 0.5f}, m.hair.add(x, 0);
+  const Image image = lay_over(m, {}, layer, behind, 1);
   const float expected[] = {1.5f, 2, 4, 1, 0.5f, 0, 1, 0.75f};
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(image.pixels[i], expected[i], 1e-6f);
-  m.exact_coverage = true;
-  m.at(0, 0).coverage = 1, m.at(1, 0).coverage = 0.25f;  // the color stays, the opacity is this
+  m.coverage.resize(2);
+  m.coverage[0] = 1, m.coverage[1] = 0.25f;  // the color stays, the opacity is this
   const float exact[] = {1, 0, 2, 1, 0.25f, 0, 0.5f, 0.625f};
-  const Image covered = lay_over(m, layer, behind, 1);
+  const Image covered = lay_over(m, {}, layer, behind, 1);
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(covered.pixels[i], exact[i], 1e-6f);
 }
 
@@ -261,13 +251,13 @@ TEST(Matte, LiesOverWhatIsBehind) {
 TEST(Matte, LiesWhereItsLayerIs) {
   StrandLayer layer = bare_layer(2, 2);
   layer.left = 1, layer.top = 2;
-  Behind behind{4, 5, Buffer<Vec4>(20), {}};
+  Behind behind;
+  behind.width = 4, behind.height = 5, behind.color.resize(20);
   behind.color.fill({1, 1, 1, 1});
-  Matte m(2, 2, 0);
-  m.clear();
+  Matte m(2, 2, 0, false);
   m.left = 1, m.top = 2;
-  m.at(1, 0).alpha = 1, m.hair.add(1, 0);
-  const Image image = lay_over(m, layer, behind, 0);
+  m.color[m.index(1, 0)].w = 1, m.hair.add(1, 0);
+  const Image image = lay_over(m, {}, layer, behind, 0);
   for (std::size_t p = 0; p < 20; ++p) EXPECT_EQ(image.pixels[4 * p], p == 2 * 4 + 2 ? 0.f : 1.f) << p;
 }
 

@@ -2,18 +2,21 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <vector>
 
 #include "filter/kernel_taps.h"
 
 namespace pelage {
 
-/// Floats that `weights` of color_weights() needs beyond the number of taps.
-inline constexpr std::size_t kColorWeightPadding = 64;
+/// Of the pixels of the pairs of a kernel.
+struct ColorWeights {
+  std::vector<float> before, after;  ///< of the one at −offset and at offset
 
-/// weights[i] = weight of tap i times exp(−Δ²/σ_c²) with the distance Δ in color from `here` to its pixel (the last factor of
-/// Huang 2025, eq. 11). Wide; the same bits on any instruction set.
-void color_weights(const MattePixel* here, std::span<const KernelTap> taps, const kernel::FilterKernel& terms,
-                   std::span<float> weights);
+  /// For up to `pairs` pairs.
+  explicit ColorWeights(std::size_t pairs);
+  /// Weight of a pair times exp(−Δ²/σ_c²) with the distance Δ in color from `here` to its pixels (the last factor of Huang
+  /// 2025, eq. 11). Wide; the same bits on any instruction set.
+  void weigh(const Vec4* here, const KernelTaps& taps, const kernel::FilterKernel& terms);
+};
 
 }  // namespace pelage

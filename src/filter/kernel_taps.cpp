@@ -22,10 +22,15 @@ kernel::FilterKernel terms_of(const AnisotropicKernel& k) {
   return f;
 }
 
-std::vector<KernelTap> taps_along(Vec2 tangent, const kernel::FilterKernel& k, int reach, std::size_t stride) {
-  std::vector<KernelTap> taps;
-  for (int j = -reach; j <= reach; ++j)
-    for (int i = -reach; i <= reach; ++i) {
+struct Pairs {
+  std::vector<std::int32_t> offset;
+  std::vector<float> weight;
+};
+
+Pairs pairs_along(Vec2 tangent, const kernel::FilterKernel& k, int reach, std::size_t stride) {
+  Pairs pairs;
+  for (int j = 0; j <= reach; ++j)
+    for (int i = j == 0 ? 1 : -reach; i <= reach; ++i) {
       const float dx = static_cast<float>(i), dy = static_cast<float>(j);
       const float along = dx * tangent.x + dy * tangent.y, across = dx * tangent.y - dy * tangent.x;
       if (!kernel::filter_inside(k, along, across)) continue;
@@ -34,9 +39,10 @@ std::vector<KernelTap> taps_along(Vec2 tangent, const kernel::FilterKernel& k, i
         const float angle = kernel::filter_angle(along, across);
         exponent += angle * angle * k.inverse_angle2;
       }
-      taps.push_back({j * static_cast<std::int32_t>(stride) + i, kernel::m_exp(-exponent)});
+      pairs.offset.push_back(j * static_cast<std::int32_t>(stride) + i);
+      pairs.weight.push_back(kernel::m_exp(-exponent));
     }
-  return taps;
+  return pairs;
 }
 
 }  // namespace
@@ -54,20 +60,24 @@ Vec2 DirectionCells::middle(int cell) {
   return t * (1 / length(t));
 }
 
-KernelTaps::KernelTaps(const AnisotropicKernel& kernel, std::size_t stride) : terms_(terms_of(kernel)) {
-  std::vector<std::vector<KernelTap>> by_cell(DirectionCells::kDirections);
+KernelTable::KernelTable(const AnisotropicKernel& kernel, std::size_t stride)
+    : terms_(terms_of(kernel)),
+      flat_(std::isinf(kernel.sigma_distance) && std::isinf(kernel.sigma_angle) && std::isinf(kernel.sigma_color) &&
+            std::isinf(kernel.sigma_along) && std::isinf(kernel.sigma_across)) {
+  std::vector<Pairs> by_cell(DirectionCells::kDirections);
   parallel_for(by_cell.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell)
-      by_cell[cell] = taps_along(DirectionCells::middle(static_cast<int>(cell)), terms_, kernel.reach(), stride);
+      by_cell[cell] = pairs_along(DirectionCells::middle(static_cast<int>(cell)), terms_, kernel.reach(), stride);
   });
-  for (const auto& taps : by_cell) {
-    first_.push_back(taps_.size());
-    taps_.insert(taps_.end(), taps.begin(), taps.end());
+  for (const Pairs& pairs : by_cell) {
+    first_.push_back(offset_.size());
+    offset_.insert(offset_.end(), pairs.offset.begin(), pairs.offset.end());
+    weight_.insert(weight_.end(), pairs.weight.begin(), pairs.weight.end());
   }
-  first_.push_back(taps_.size());
+  first_.push_back(offset_.size());
 }
 
-std::size_t KernelTaps::most() const {
+std::size_t KernelTable::most_pairs() const {
   std::size_t most = 0;
   for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) most = std::max(most, first_[cell + 1] - first_[cell]);
   return most;

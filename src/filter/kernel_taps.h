@@ -23,29 +23,36 @@ struct DirectionCells {
   static Vec2 middle(int cell);
 };
 
-/// A pixel under the kernel.
-struct KernelTap {
-  std::int32_t offset;  ///< to it, in pixels of a row-major picture
-  float weight;         ///< but for the term of color
+/// The pixels under the kernel but for the one in its middle, for one direction. They come in pairs at equal distances on
+/// either side, with equal weights; the first ones of the pairs are here.
+struct KernelTaps {
+  std::span<const std::int32_t> offset;  ///< in pixels of a row-major picture; the other one of the pair is at −offset
+  std::span<const float> weight;         ///< but for the term of color, of which the pixel in the middle has 1
 };
 
-/// All of a kernel's pixels for every direction, in the order of rows.
-class KernelTaps {
+/// A kernel's pixels for every direction.
+class KernelTable {
  public:
   /// For pictures with `stride` pixels a row. O(kDirections · reach²).
-  KernelTaps(const AnisotropicKernel& kernel, std::size_t stride);
-  std::span<const KernelTap> of(Vec2 tangent) const {
+  KernelTable(const AnisotropicKernel& kernel, std::size_t stride);
+
+  KernelTaps along(Vec2 tangent) const {
     const auto cell = static_cast<std::size_t>(DirectionCells::cell_of(tangent));
-    return std::span(taps_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+    const std::size_t first = first_[cell], count = first_[cell + 1] - first;
+    return {std::span(offset_).subspan(first, count), std::span(weight_).subspan(first, count)};
   }
-  /// The most that a direction has.
-  std::size_t most() const;
+  /// The most pairs that a direction has.
+  std::size_t most_pairs() const;
   const kernel::FilterKernel& terms() const { return terms_; }
+  /// Whether all weights are 1.
+  bool flat() const { return flat_; }
 
  private:
   kernel::FilterKernel terms_;
+  bool flat_;
   std::vector<std::size_t> first_;  // by cell
-  std::vector<KernelTap> taps_;
+  std::vector<std::int32_t> offset_;
+  std::vector<float> weight_;
 };
 
 }  // namespace pelage

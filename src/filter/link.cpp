@@ -5,8 +5,9 @@
 #include <bit>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/parallel.h"
-#include "filter/pixel_mask.h"
+#include "core/pixel_mask.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
@@ -15,7 +16,6 @@ namespace {
 constexpr std::size_t kRowsPerTask = PixelMask::kRowsPerTask;
 constexpr float kLongestStep = 1.5f;    // pixels
 constexpr float kShortestStep = 1e-4f;  // of a span: gives up halving where a strand jumps
-constexpr std::uint8_t kNoNeighbor = 0xff;
 
 /// Neighbor n = 0…8 of a pixel is at (n mod 3 − 1, n div 3 − 1); 4 is the pixel itself.
 constexpr int neighbor_x(int n) { return n % 3 - 1; }
@@ -30,10 +30,13 @@ struct Grid {
   }
 };
 
+/// How much a score falls short of 1, in 12 bits.
+std::uint16_t loss_of(float score) { return static_cast<std::uint16_t>((1 - std::clamp(score, 0.f, 1.f)) * 4095 + 0.5f); }
+constexpr std::uint16_t kNoWalk = 4096;
+
 /// The neighbor whose strand fits an empty pixel best, and how well (eq. 5).
 struct Choice {
-  float score = 0;
-  std::uint8_t neighbor = kNoNeighbor;
+  std::uint16_t neighbor : 4, loss : 12;
 };
 
 class Selector {
@@ -46,14 +49,16 @@ class Selector {
     }
   }
 
-  Choice choose(int x, int y) const {
+  /// False where none fits well enough.
+  bool choose(int x, int y, Choice& choice) const {
     const float front = settings_.depth_sigma > 0 ? nearest_candidate(x, y) : 0;
-    Choice best;
-    for (int n = 0; n < 9; ++n) {
-      const float score = score_of(x, y, n, front);
-      if (score > settings_.alignment && score > best.score) best = {score, static_cast<std::uint8_t>(n)};
-    }
-    return best;
+    float best = settings_.alignment;
+    for (int n = 0; n < 9; ++n)
+      if (const float score = score_of(x, y, n, front); score > best) {
+        best = score;
+        choice = {static_cast<std::uint16_t>(n), loss_of(score)};
+      }
+    return best > settings_.alignment;
   }
 
  private:
@@ -89,11 +94,10 @@ struct Step {
   float depth;
 };
 
-/// score (best first), depth (nearest first), source: 12, 20 and 32 bits.
-std::uint64_t order_of(float score, float depth, std::size_t source) {
-  const auto loss = static_cast<std::uint64_t>((1 - std::clamp(score, 0.f, 1.f)) * 4095 + 0.5f);
+/// Score (best first), depth (nearest first), source: 12, 20 and 32 bits.
+std::uint64_t order_of(std::uint16_t loss, float depth, std::size_t source) {
   const std::uint64_t far = std::bit_cast<std::uint32_t>(depth) >> 11;
-  return loss << 52 | far << 32 | source;
+  return static_cast<std::uint64_t>(loss) << 52 | far << 32 | source;
 }
 
 class Walker {
@@ -101,10 +105,12 @@ class Walker {
   Walker(const StrandLayer& layer, const PixelMask& hair, const StrandCurves& curves)
       : layer_(layer), hair_(hair), curves_(curves), grid_{layer.width, layer.height} {}
 
-  /// From the sample of pixel `source` toward the tip (sign 1) or the root (−1): adds the empty pixels on the way to `steps`.
-  void walk(std::size_t source, float score, float sign, std::vector<Step>& steps) const {
+  StrandCurve curve_of(std::size_t source) const { return curves_.curve_of(layer_.visibility[source].primitive()); }
+
+  /// From the sample of pixel `source` along its strand, `curve`, toward the tip (sign 1) or the root (−1): adds the empty pixels
+  /// on the way to `steps`.
+  void walk(std::size_t source, StrandCurve& curve, std::uint16_t loss, float sign, std::vector<Step>& steps) const {
     const VisibilitySample& start = layer_.visibility[source];
-    const StrandCurve curve = curves_.curve_of(start.primitive());
     float s = static_cast<float>(start.primitive() - curve.first_primitive) + start.t;
     CurvePoint last;
     if (!curves_.at(curve, s, last)) return;
@@ -130,7 +136,7 @@ class Walker {
       if (!layer_.opaque_depth.empty() && layer_.opaque_depth[pixel] < point.depth) continue;
       float t = 0;
       const std::uint32_t primitive = StrandCurves::primitive_at(curve, s, t);
-      steps.push_back({order_of(score, point.depth, source), static_cast<std::uint32_t>(pixel),
+      steps.push_back({order_of(loss, point.depth, source), static_cast<std::uint32_t>(pixel),
                        pack_visibility(point.tangent, t, primitive, true), point.depth});
     }
   }
@@ -156,27 +162,24 @@ Choices choose_all(const StrandLayer& layer, const PixelMask& hair, const LinkSe
   const Grid grid{layer.width, layer.height};
   Choices all{PixelMask(layer.width, layer.height), Buffer<Choice>(layer.visibility.size())};
   hair.grown(1).without(hair).parallel_for_each([&](int x, int y) {
-    const Choice choice = selector.choose(x, y);
-    if (choice.neighbor == kNoNeighbor) return;
-    all.choices[grid.index(x, y)] = choice;
-    all.made.add(x, y);
+    if (selector.choose(x, y, all.choices[grid.index(x, y)])) all.made.add(x, y);
   });
   return all;
 }
 
-/// The best score of the empty pixels that chose (x, y), by whether they lie toward the strand's root or its tip; 0 for none.
-void scores_of_source(const StrandLayer& layer, const Choices& all, int x, int y, float (&score)[2]) {
+/// The least loss of the empty pixels that chose (x, y), by whether they lie toward the strand's root or its tip; or kNoWalk.
+void losses_of_source(const StrandLayer& layer, const Choices& all, int x, int y, std::uint16_t (&loss)[2]) {
   const Grid grid{layer.width, layer.height};
   const Vec2 tangent = layer.visibility[grid.index(x, y)].tangent();
-  score[0] = score[1] = 0;
+  loss[0] = loss[1] = kNoWalk;
   for (int n = 0; n < 9; ++n) {
     const int ex = x + neighbor_x(n), ey = y + neighbor_y(n);
     if (!all.made.contains(ex, ey)) continue;
     const Choice& choice = all.choices[grid.index(ex, ey)];
     if (choice.neighbor != 8 - n) continue;  // the empty pixel sees its source on the other side
     const Vec2 offset(static_cast<float>(neighbor_x(n)), static_cast<float>(neighbor_y(n)));
-    float& best = score[dot(offset, tangent) > 0];
-    best = std::max(best, choice.score);
+    std::uint16_t& least = loss[dot(offset, tangent) > 0];
+    least = std::min<std::uint16_t>(least, choice.loss);
   }
 }
 
@@ -189,12 +192,8 @@ void atomic_least(std::uint64_t& value, std::uint64_t other) {
 
 }  // namespace
 
-PixelMask hair_pixels(const StrandLayer& layer) {
-  return {layer.width, layer.height, [&](std::size_t p) { return layer.visibility[p].is_hair(); }};
-}
-
 PixelBox screen_box(const StrandLayer& layer) {
-  const PixelBox box = hair_pixels(layer).box();
+  const PixelBox box = layer.hair.box();
   const auto up = [&](int x) { return (x + layer.side - 1) / layer.side; };
   return {box.left / layer.side, up(box.right), box.top / layer.side, up(box.bottom)};
 }
@@ -202,7 +201,8 @@ PixelBox screen_box(const StrandLayer& layer) {
 Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSettings& settings) {
   Links links;
   const Grid grid{layer.width, layer.height};
-  const PixelMask hair = hair_pixels(layer);
+  const PixelMask& hair = layer.hair;
+  PELAGE_CHECK(hair.width() == layer.width && hair.height() == layer.height);
   const Choices all = choose_all(layer, hair, settings);
   links.candidates = all.made.count();
 
@@ -220,10 +220,13 @@ Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSet
     std::vector<Step>& mine = steps[first / kRowsPerTask];
     std::size_t count = 0;
     sources.for_each(first, last, [&](int x, int y) {
-      float score[2];
-      scores_of_source(layer, all, x, y, score);
+      std::uint16_t loss[2];
+      losses_of_source(layer, all, x, y, loss);
+      if (loss[0] == kNoWalk && loss[1] == kNoWalk) return;
+      const std::size_t source = grid.index(x, y);
+      StrandCurve curve = walker.curve_of(source);
       for (int tipward = 0; tipward < 2; ++tipward)
-        if (score[tipward] > 0) walker.walk(grid.index(x, y), score[tipward], tipward ? 1.f : -1.f, mine), ++count;
+        if (loss[tipward] != kNoWalk) walker.walk(source, curve, loss[tipward], tipward ? 1.f : -1.f, mine), ++count;
     });
     for (const Step& step : mine) atomic_least(best[step.pixel], step.order);
     walks += count;
@@ -243,6 +246,7 @@ Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSet
     }
   });
   for (const auto& part : fills) links.fills.insert(links.fills.end(), part.begin(), part.end());
+  for (const Fill& fill : links.fills) layer.hair.add(fill.pixel);
   return links;
 }
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "filter/pixel_mask.h"
+#include "core/pixel_mask.h"
 #include "filter/strand_curves.h"
 #include "frame/visibility.h"
 
@@ -25,9 +25,7 @@ struct Links {
   std::size_t walks = 0;       ///< from a sample, in one direction
 };
 
-/// The pixels of `layer` that show hair, hit or filled.
-PixelMask hair_pixels(const StrandLayer& layer);
-/// The box around them, in screen pixels of the layer.
+/// The box around layer.hair, in screen pixels of the layer.
 PixelBox screen_box(const StrandLayer& layer);
 
 /// Fills empty pixels of `layer` with the strands that pass through them. A filled pixel has the color of the sample that its

@@ -36,7 +36,7 @@ class Polylines final : public StrandCurves {
     while (i + 1 < strands_.size() && first(i + 1) <= primitive) ++i;
     return {first(i), 0, i, static_cast<float>(strands_[i].corners.size() - 1)};
   }
-  bool at(const StrandCurve& curve, float s, CurvePoint& point) const override {
+  bool at(StrandCurve& curve, float s, CurvePoint& point) const override {
     const auto& corners = strands_[curve.strand].corners;
     const std::size_t i = std::min(static_cast<std::size_t>(s), corners.size() - 2);
     const Vec2 d = corners[i + 1] - corners[i];
@@ -45,7 +45,7 @@ class Polylines final : public StrandCurves {
     point.tangent = length(d) > 0 ? d * (1 / length(d)) : Vec2();
     return true;
   }
-  float step(const StrandCurve& curve, float s, float, float pixels) const override {
+  float step(StrandCurve& curve, float s, float, float pixels) const override {
     const auto& corners = strands_[curve.strand].corners;
     const std::size_t i = std::min(static_cast<std::size_t>(s), corners.size() - 2);
     const float chord = length(corners[i + 1] - corners[i]);
@@ -62,6 +62,7 @@ StrandLayer empty_layer(int width, int height) {
   const std::size_t n = static_cast<std::size_t>(width * height);
   layer.visibility.resize(n), layer.depth.resize(n), layer.color.resize(n);
   layer.visibility.fill({}), layer.depth.fill(INFINITY), layer.color.fill({});
+  layer.hair = PixelMask(width, height);
   return layer;
 }
 
@@ -73,14 +74,14 @@ std::size_t at(const StrandLayer& layer, Vec2 screen) {
 
 /// Enters a sample of strand `strand` of `curves` at parameter s into the pixel where it is.
 std::size_t hit(StrandLayer& layer, const Polylines& curves, std::uint32_t strand, float s, Vec3 color = {1, 0.5f, 0.25f}) {
-  const StrandCurve curve = curves.curve_of(curves.first(strand));
+  StrandCurve curve = curves.curve_of(curves.first(strand));
   CurvePoint point;
   EXPECT_TRUE(curves.at(curve, s, point));
   const std::size_t p = at(layer, point.screen);
   float t = 0;
   const std::uint32_t primitive = StrandCurves::primitive_at(curve, s, t);
   layer.visibility[p] = pack_visibility(point.tangent, t, primitive, false);
-  layer.depth[p] = point.depth, layer.color[p] = color;
+  layer.depth[p] = point.depth, layer.color[p] = color, layer.hair.add(p);
   return p;
 }
 
@@ -247,7 +248,7 @@ std::map<std::size_t, bool> reachable(const StrandLayer& layer, const StrandCurv
         }
       if (best == 0.5f) continue;
       const VisibilitySample& v = layer.visibility[source];
-      const StrandCurve curve = curves.curve_of(v.primitive());
+      StrandCurve curve = curves.curve_of(v.primitive());
       const float sign = dot(way, v.tangent()) > 0 ? 1.f : -1.f;
       float s = static_cast<float>(v.primitive() - curve.first_primitive) + v.t;
       for (CurvePoint p; s >= 0 && s <= curve.end && curves.at(curve, s, p);
@@ -285,7 +286,8 @@ TEST(Link, FillsWhatASlowWalkReaches) {
       for (int k = 0; k < 8; ++k) {
         const float s = 5 * rng.uniform();
         CurvePoint p;
-        curves.at(curves.curve_of(curves.first(i)), s, p);
+        StrandCurve curve = curves.curve_of(curves.first(i));
+        curves.at(curve, s, p);
         if (p.screen.x >= 0 && p.screen.y >= 0 && p.screen.x < 40 && p.screen.y < 30 &&
             !layer.visibility[at(layer, static_cast<int>(p.screen.x), static_cast<int>(p.screen.y))].is_hair())
           hit(layer, curves, i, s);
@@ -339,7 +341,7 @@ TEST(GroomCurves, AreTheStrandsOfTheScene) {
   const GroomCurves curves(scene, view);
   const SegmentNumbering spans = number_spans(scene);
   for (std::uint32_t primitive : {0u, 1u, 14u, 16u * 33u + 5u, 16u * 299u}) {
-    const StrandCurve curve = curves.curve_of(primitive);
+    StrandCurve curve = curves.curve_of(primitive);
     EXPECT_EQ(curve.strand, primitive / 16);
     EXPECT_EQ(curve.end, 15.f);
     CurvePoint point, next;

@@ -1,7 +1,9 @@
 #include "filter/matte.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "core/check.h"
@@ -43,7 +45,7 @@ void add_scaled(Vec4& sum, Vec4 v, float weight) {
 /// sample of hair hides where there are such.
 Vec4 seen_behind(const StrandLayer& layer, const Behind& behind, int x, int y) {
   if (layer.side == 1)
-    return behind.color[static_cast<std::size_t>(y) * static_cast<std::size_t>(behind.width) + static_cast<std::size_t>(x)];
+    return behind.at(static_cast<std::size_t>(y) * static_cast<std::size_t>(behind.width) + static_cast<std::size_t>(x));
   Vec4 open, all;
   float count = 0;
   for (int j = y * layer.side; j < (y + 1) * layer.side; ++j)
@@ -51,7 +53,7 @@ Vec4 seen_behind(const StrandLayer& layer, const Behind& behind, int x, int y) {
       const auto at = [](int u, int v, int width) {
         return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
       };
-      const Vec4 color = behind.color[at(i, j, behind.width)];
+      const Vec4 color = behind.at(at(i, j, behind.width));
       add_scaled(all, color, 1);
       const int u = i - layer.left, v = j - layer.top;
       const bool inside = u >= 0 && v >= 0 && u < layer.width && v < layer.height;
@@ -66,12 +68,13 @@ Vec4 seen_behind(const StrandLayer& layer, const Behind& behind, int x, int y) {
 
 }  // namespace
 
-Matte::Matte(int w, int h, int b)
-    : width(w), height(h), border(b), hair(w, h), pixels_(stride() * static_cast<std::size_t>(h + 2 * b)) {}
-
-void Matte::clear() {
-  parallel_for(pixels_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    std::fill(pixels_.begin() + begin, pixels_.begin() + end, MattePixel{});
+Matte::Matte(int w, int h, int b, bool exact_coverage) : width(w), height(h), border(b), hair(w, h) {
+  const std::size_t pixels = stride() * static_cast<std::size_t>(h + 2 * b);
+  color.resize(pixels), weight.resize(pixels), tangent.resize(pixels);
+  if (exact_coverage) coverage.resize(pixels);
+  parallel_for(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    std::fill(color.begin() + begin, color.begin() + end, Vec4());
+    std::fill(weight.begin() + begin, weight.begin() + end, 0.f);
   });
 }
 
@@ -92,40 +95,41 @@ void extend_tangents(Matte& m, const StrandLayer& layer, int reach) {
     MeanDirection sum;
     float nearest = std::numeric_limits<float>::infinity();
     for (int j = std::max(0, y - reach); j <= std::min(m.height - 1, y + reach); ++j)
-      for (int i = std::max(0, x - reach); i <= std::min(m.width - 1, x + reach); ++i)
-        if (m.hair.contains(i, j)) {
-          sum.add(m.at(i, j).tangent());
-          if (!layer.opaque_depth.empty()) nearest = std::min(nearest, nearest_hair(layer, i, j));
-        }
+      for (std::uint64_t bits = m.hair.bits(x - reach, j, 2 * reach + 1); bits != 0; bits &= bits - 1) {
+        const int i = x - reach + std::countr_zero(bits);
+        sum.add(m.tangent[m.index(i, j)]);
+        if (!layer.opaque_depth.empty()) nearest = std::min(nearest, nearest_hair(layer, i, j));
+      }
     const Vec2 tangent = sum.mean();
     if (tangent == Vec2() || farthest_opaque(layer, x, y) < nearest) return;
-    m.at(x, y).lie(tangent);
+    m.lie(x, y, tangent);
     gaps.add(x, y);
   });
   gaps.for_each(0, static_cast<std::size_t>(m.height), [&](int x, int y) { m.hair.add(x, y); });
 }
 
-Image lay_over(const Matte& m, const StrandLayer& layer, const Behind& behind, float exposure) {
+Image lay_over(const Matte& m, const Buffer<Vec4>& filtered, const StrandLayer& layer, const Behind& behind, float exposure) {
   PELAGE_CHECK_EQ(m.width * layer.side, layer.width);
   PELAGE_CHECK_EQ(m.left * layer.side, layer.left);
+  const Buffer<Vec4>& color = filtered.empty() ? m.color : filtered;
   const int width = behind.width / layer.side, height = behind.height / layer.side;
   Image image(width, height, {"R", "G", "B", "A"});
   const float light = std::exp2(exposure);
   parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    float* out = image.pixels.data() + 4 * first * static_cast<std::size_t>(width);
     for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y)
-      for (int x = 0; x < width; ++x) {
-        const Vec4 back = seen_behind(layer, behind, x, y);
-        const int i = x - m.left, j = y - m.top;
-        const MattePixel hair = m.hair.contains(i, j) ? m.at(i, j) : MattePixel();
-        // Where the area is known, the filter has only had to find its color.
-        const bool exact = m.exact_coverage && hair.alpha > 0;
-        const float alpha = exact ? hair.coverage : hair.alpha, scale = exact ? alpha / hair.alpha : 1, through = 1 - alpha;
-        float* out = image.pixels.data() +
-                     4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
-        out[0] = (hair.r * scale + back.x * through) * light;
-        out[1] = (hair.g * scale + back.y * through) * light;
-        out[2] = (hair.b * scale + back.z * through) * light;
-        out[3] = alpha + back.w * through;
+      for (int x = 0; x < width; ++x, out += 4) {
+        Vec4 picture = seen_behind(layer, behind, x, y);
+        if (m.hair.contains(x - m.left, y - m.top)) {
+          const std::size_t p = m.index(x - m.left, y - m.top);
+          const Vec4 hair = color[p];
+          // Where the area is known, the filter has only had to find its color.
+          const bool exact = !m.coverage.empty() && hair.w > 0;
+          const float alpha = exact ? m.coverage[p] : hair.w, scale = exact ? alpha / hair.w : 1, through = 1 - alpha;
+          picture = {hair.x * scale + picture.x * through, hair.y * scale + picture.y * through,
+                     hair.z * scale + picture.z * through, alpha + picture.w * through};
+        }
+        out[0] = picture.x * light, out[1] = picture.y * light, out[2] = picture.z * light, out[3] = picture.w;
       }
   });
   return image;

@@ -7,49 +7,40 @@
 #include <cstddef>
 
 #include "core/buffer.h"
-#include "filter/pixel_mask.h"
+#include "core/pixel_mask.h"
 #include "frame/visibility.h"
 
 namespace pelage {
 
-/// Hair in a pixel. One vector of eight floats, which the filter adds up as a whole.
-struct MattePixel {
-  float r = 0, g = 0, b = 0, alpha = 0;  ///< premultiplied linear color and opacity
-  float weight = 0;                      ///< 1 where hair is or reaches, else 0
-  float tangent_x = 0, tangent_y = 0;    ///< unit vector on the screen along the hair, sign arbitrary; 0, 0 for none
-  float coverage = 0;                    ///< the opacity that the picture gets, where Matte::exact_coverage is set
-
-  Vec2 tangent() const { return {tangent_x, tangent_y}; }
-  void lie(Vec2 tangent) { weight = 1, tangent_x = tangent.x, tangent_y = tangent.y; }
-};
-static_assert(sizeof(MattePixel) == 8 * sizeof(float));
-
-/// The hair of a part of a picture, with a border of empty pixels around it, so that a kernel needs no ends.
+/// The hair of a part of a picture, with a border of empty pixels around it, so that a kernel needs no ends. Buffers are
+/// [height + 2·border][stride()]: see index().
 class Matte {
  public:
   Matte() = default;
-  /// Pixels are undefined until clear() or a write.
-  Matte(int width, int height, int border);
+  /// Without hair, and without a border where nobody needs one. Directions and coverage are undefined.
+  Matte(int width, int height, int border, bool exact_coverage);
 
-  int left = 0, top = 0;        ///< screen pixel of the picture that the first one inside the border is
-  int width = 0, height = 0;    ///< screen pixels, without the border
-  int border = 0;               ///< pixels
-  bool exact_coverage = false;  ///< whether MattePixel::coverage is the opacity, and alpha an estimate of it
-  PixelMask hair;               ///< pixels with a weight; the others of a filtered matte are undefined
+  int left = 0, top = 0;      ///< screen pixel of the picture that the first one inside the border is
+  int width = 0, height = 0;  ///< screen pixels, without the border
+  int border = 0;             ///< pixels
+
+  PixelMask hair;          ///< pixels that show hair, or lie in a gap of it
+  Buffer<Vec4> color;      ///< premultiplied linear R, G, B and opacity; 0 without hair
+  Buffer<float> weight;    ///< 1 for the pixels of `hair`, else 0
+  Buffer<Vec2> tangent;    ///< unit vector on the screen along the hair, sign arbitrary; 0, 0 seen end-on. Only for `hair`
+  Buffer<float> coverage;  ///< the opacity that the picture gets, where it is known exactly; else empty
 
   std::size_t stride() const { return static_cast<std::size_t>(width + 2 * border); }
   /// −border ≤ x < width + border, and so for y.
-  MattePixel& at(int x, int y) { return pixels_[index(x, y)]; }
-  const MattePixel& at(int x, int y) const { return pixels_[index(x, y)]; }
-  std::size_t bytes() const { return pixels_.bytes(); }
-  /// Empties all pixels, those of the border too.
-  void clear();
-
- private:
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y + border) * stride() + static_cast<std::size_t>(x + border);
   }
-  Buffer<MattePixel> pixels_;
+  /// Makes a pixel one of hair that lies along `t`; hair.add() is for the caller.
+  void lie(int x, int y, Vec2 t) {
+    const std::size_t p = index(x, y);
+    weight[p] = 1, tangent[p] = t;
+  }
+  std::size_t bytes() const { return color.bytes() + weight.bytes() + tangent.bytes() + coverage.bytes(); }
 };
 
 /// Directions without a sign, such as tangents: their mean is that of the vectors of twice their angles.
@@ -70,7 +61,8 @@ inline constexpr int kGapReach = 2;  ///< gaps between strands that one sample m
 void extend_tangents(Matte& matte, const StrandLayer& layer, int reach = kGapReach);
 
 /// The matte over what is behind it: R, G, B, A, linear, premultiplied, times 2^exposure, for all of the picture. `layer` is
-/// the one that the matte was made from.
-Image lay_over(const Matte& matte, const StrandLayer& layer, const Behind& behind, float exposure);
+/// the one that the matte was made from; `filtered` takes the place of its color where given (filter_anisotropic()).
+Image lay_over(const Matte& matte, const Buffer<Vec4>& filtered, const StrandLayer& layer, const Behind& behind,
+               float exposure);
 
 }  // namespace pelage

@@ -199,7 +199,7 @@ struct SampleCurves::Maker {
     parallel_for(strand_count(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
         const Strand& strand = curves.strands_[s];
-        const StrandCurve curve = curves.curve_of(strand.first_primitive);
+        StrandCurve curve = curves.curve_of(strand.first_primitive);
         for (std::size_t i = first_pixel[s]; i < first_pixel[s + 1]; ++i) {
           float t = 0;
           const std::uint32_t primitive = primitive_at(curve, std::clamp(samples.u[pixels[i]], 0.f, 1.f) * curve.end, t);
@@ -248,7 +248,7 @@ bool SampleCurves::place(const Strand& strand, float u, Place& place) const {
   return true;
 }
 
-bool SampleCurves::at(const StrandCurve& curve, float s, CurvePoint& point) const {
+bool SampleCurves::at(StrandCurve& curve, float s, CurvePoint& point) const {
   Place here;
   if (!place(strands_[curve.strand], s / curve.end, here)) return false;
   ProjectiveCamera::Seen seen;
@@ -261,7 +261,7 @@ bool SampleCurves::at(const StrandCurve& curve, float s, CurvePoint& point) cons
   return true;
 }
 
-float SampleCurves::step(const StrandCurve& curve, float s, float, float pixels) const {
+float SampleCurves::step(StrandCurve& curve, float s, float, float pixels) const {
   Place here;
   place(strands_[curve.strand], s / curve.end, here);
   const float across = here.speed * camera_.pixels_per_unit(here.position);

@@ -29,8 +29,8 @@ class SampleCurves final : public StrandCurves {
   SampleCurves(const HairSamples& samples, const SampleCurveSettings& settings);
 
   StrandCurve curve_of(std::uint32_t primitive) const override;
-  bool at(const StrandCurve& curve, float s, CurvePoint& point) const override;
-  float step(const StrandCurve& curve, float s, float depth, float pixels) const override;
+  bool at(StrandCurve& curve, float s, CurvePoint& point) const override;
+  float step(StrandCurve& curve, float s, float depth, float pixels) const override;
 
   /// [h·w] the samples as visibility pixels; handed out once.
   Buffer<VisibilitySample> take_visibility() { return std::move(visibility_); }

@@ -32,7 +32,7 @@ std::size_t add_on_screen(HairSamples& s, float strand, float u, Vec2 at, Vec2 a
 }
 
 CurvePoint point_at(const SampleCurves& curves, std::uint32_t primitive, float u, bool& seen) {
-  const StrandCurve curve = curves.curve_of(primitive);
+  StrandCurve curve = curves.curve_of(primitive);
   CurvePoint point;
   seen = curves.at(curve, u * curve.end, point);
   return point;
@@ -104,8 +104,9 @@ TEST(SampleCurves, GoOnStraightAsFarAsTheyReachAndTheStrandGoes) {
   }
   EXPECT_NEAR(point_at(far, 0, 1, seen).screen.x, 50.5f, 1e-3f);
   EXPECT_TRUE(seen);
-  EXPECT_EQ(far.curve_of(0).end, 5.f);  // 50 pixels, ten a primitive
-  EXPECT_NEAR(far.step(far.curve_of(0), 2.5f, 1, 1), 0.1f, 1e-4f);
+  StrandCurve curve = far.curve_of(0);
+  EXPECT_EQ(curve.end, 5.f);  // 50 pixels, ten a primitive
+  EXPECT_NEAR(far.step(curve, 2.5f, 1, 1), 0.1f, 1e-4f);
 }
 
 // A strand of one sample is taken to be as long as the others.
@@ -146,7 +147,7 @@ struct Sampled {
     Rng rng(9, 9);
     const SegmentNumbering spans = number_spans(scene);
     for (std::uint32_t strand = 0; strand < 40; ++strand) {
-      const StrandCurve curve = groom.curve_of(24 * strand);
+      StrandCurve curve = groom.curve_of(24 * strand);
       for (float s = 0; s < curve.end; s += 0.05f) {
         if (rng.uniform() > share) continue;
         CurvePoint point;
@@ -175,8 +176,8 @@ TEST(SampleCurves, FollowTheGroomThatWasSampled) {
   for (const auto& [pixel, s] : all.places) {
     const VisibilitySample& v = visibility[pixel];
     ASSERT_TRUE(v.is_hair());
-    const StrandCurve made = curves.curve_of(v.primitive()),
-                      real = all.groom.curve_of(24 * (static_cast<std::uint32_t>(all.samples.strand[pixel]) - 1));
+    StrandCurve made = curves.curve_of(v.primitive()),
+                real = all.groom.curve_of(24 * (static_cast<std::uint32_t>(all.samples.strand[pixel]) - 1));
     CurvePoint there, here;
     const float at = static_cast<float>(v.primitive() - made.first_primitive) + v.t;
     ASSERT_TRUE(curves.at(made, at, there));

@@ -56,15 +56,15 @@ bool SegmentCounts::insert(std::uint32_t key) {
   return false;
 }
 
-SegmentCounts::Slot* SegmentCounts::find(std::uint32_t key) {
-  if (!(filter_[filter_word(key, kFilterWords)] & filter_bit(key))) return nullptr;
+std::uint32_t SegmentCounts::find(std::uint32_t key) const {
+  if (!(filter_[filter_word(key, kFilterWords)] & filter_bit(key))) return kNone;
   std::size_t i = first_slot(key, slots_.size());
   for (std::size_t probe = 0; probe < std::min(kMaxProbes, slots_.size()); ++probe) {
-    if (slots_[i].key == key) return &slots_[i];
-    if (slots_[i].key == kFree) return nullptr;
+    if (slots_[i].key == key) return static_cast<std::uint32_t>(i);
+    if (slots_[i].key == kFree) return kNone;
     i = i + 1 < slots_.size() ? i + 1 : 0;
   }
-  return nullptr;
+  return kNone;
 }
 
 void SegmentCounts::add_hit(Slot& slot, Vec3 color) {

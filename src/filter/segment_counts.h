@@ -31,8 +31,12 @@ class SegmentCounts {
 
   /// False where there is no free slot within kMaxProbes.
   bool insert(std::uint32_t key);
-  /// Null for a key that was never inserted, or found no place.
-  Slot* find(std::uint32_t key);
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  /// Number of the slot; kNone for a key that was never inserted, or found no place.
+  std::uint32_t find(std::uint32_t key) const;
+  Slot& operator[](std::uint32_t slot) { return slots_[slot]; }
+  const Slot& operator[](std::uint32_t slot) const { return slots_[slot]; }
   /// Takes all keys out.
   void clear();
   std::size_t used() const;

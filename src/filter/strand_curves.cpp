@@ -5,6 +5,7 @@
 #include "frame/camera_view.h"
 #include "frame/curve_basis.h"
 #include "frame/segment_lookup.h"
+#include "kernel/scalar.h"
 
 namespace pelage {
 
@@ -18,27 +19,41 @@ StrandCurve GroomCurves::curve_of(std::uint32_t primitive) const {
   return {primitive - ref.span, ref.groom, ref.strand, static_cast<float>(spans)};
 }
 
-StrandSurface GroomCurves::surface(const StrandCurve& curve, float s) const {
-  float t = 0;
-  const std::uint32_t span = primitive_at(curve, s, t) - curve.first_primitive;
-  return surface_at(*scene_, spans_, {curve.groom, curve.strand, span, 0}, t);
+void GroomCurves::load(StrandCurve& curve, std::uint32_t span) const {
+  if (curve.span == span) return;
+  const GroomInstance& groom = scene_->grooms[curve.groom];
+  span_points(*groom.strands, curve.strand, span, curve.control);
+  for (Vec3& p : curve.control) p = transform_point(view_.world_to_camera, transform_point(groom.transform, p));
+  curve.span = span;
 }
 
-bool GroomCurves::at(const StrandCurve& curve, float s, CurvePoint& point) const {
-  const StrandSurface surface = this->surface(curve, s);
-  const Vec3 c = transform_point(view_.world_to_camera, surface.position);
+bool GroomCurves::at(StrandCurve& curve, float s, CurvePoint& point) const {
+  float t = 0;
+  load(curve, primitive_at(curve, s, t) - curve.first_primitive);
+  const Vec3(&p)[4] = curve.control;
+  const CurveBasis basis = scene_->grooms[curve.groom].strands->basis;
+  const Vec3 c = kernel::curve_combine(basis_weights(basis, t), p[0], p[1], p[2], p[3]);
   if (!(c.z >= view_.near_plane)) return false;
-  const Vec2 along = project_direction(view_, c, transform_vector(view_.world_to_camera, surface.tangent));
-  const float pixels = length(along);
   point.screen = project(view_, c);
   point.depth = c.z;
-  point.tangent = pixels > 0 ? along * (1 / pixels) : Vec2();
+  point.tangent = {};
+  const Vec3 velocity = kernel::curve_combine(basis_derivative(basis, t), p[0], p[1], p[2], p[3]);
+  for (const Vec3 along : {velocity, p[2] - p[1], p[3] - p[0]}) {  // where a curve stands still, that of its surroundings
+    if (!(dot(along, along) > 0)) continue;
+    const Vec2 moved = project_direction(view_, c, along);
+    if (const float pixels = length(moved); pixels > 0) point.tangent = moved * (1 / pixels);
+    break;
+  }
   return true;
 }
 
-float GroomCurves::step(const StrandCurve& curve, float s, float depth, float pixels) const {
-  const float begin = std::min(static_cast<float>(static_cast<std::uint32_t>(s)), curve.end - 1);
-  const float chord = length(surface(curve, begin + 1).position - surface(curve, begin).position);
+float GroomCurves::step(StrandCurve& curve, float s, float depth, float pixels) const {
+  float t = 0;
+  load(curve, primitive_at(curve, s, t) - curve.first_primitive);
+  const Vec3(&p)[4] = curve.control;
+  const CurveBasis basis = scene_->grooms[curve.groom].strands->basis;
+  const auto end = [&](float u) { return kernel::curve_combine(basis_weights(basis, u), p[0], p[1], p[2], p[3]); };
+  const float chord = length(end(1) - end(0));
   return chord > 0 ? pixels / (pixels_per_metre(view_, depth) * chord) : 1;
 }
 

@@ -16,6 +16,11 @@ struct StrandCurve {
   std::uint32_t first_primitive = 0;  ///< of the strand: primitive p begins at s = p − first_primitive
   std::uint32_t groom = 0, strand = 0;
   float end = 0;
+
+  /// What StrandCurves has looked up of it last: the span at hand, in a form of its own.
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t span = kNone;
+  Vec3 control[4] = {};
 };
 
 /// A place on a strand.
@@ -32,10 +37,10 @@ class StrandCurves {
   /// The strand of a primitive.
   virtual StrandCurve curve_of(std::uint32_t primitive) const = 0;
   /// False where nothing is to be seen: behind the near plane. s ∈ [0, curve.end].
-  virtual bool at(const StrandCurve& curve, float s, CurvePoint& point) const = 0;
+  virtual bool at(StrandCurve& curve, float s, CurvePoint& point) const = 0;
   /// Parameter by which the strand moves on while it covers `pixels` at `depth`, would it lie across the view: Δu₀ of Huang
   /// 2025, eq. 6, as a step of s.
-  virtual float step(const StrandCurve& curve, float s, float depth, float pixels) const = 0;
+  virtual float step(StrandCurve& curve, float s, float depth, float pixels) const = 0;
 
   /// The primitive at s, and t on it.
   static std::uint32_t primitive_at(const StrandCurve& curve, float s, float& t) {
@@ -45,16 +50,17 @@ class StrandCurves {
   }
 };
 
-/// The strands of a scene's grooms, seen by `view`. Refers to both.
+/// The strands of a scene's grooms, seen by `view`. Refers to the scene.
 class GroomCurves final : public StrandCurves {
  public:
   GroomCurves(const Scene& scene, const CameraView& view);
   StrandCurve curve_of(std::uint32_t primitive) const override;
-  bool at(const StrandCurve& curve, float s, CurvePoint& point) const override;
-  float step(const StrandCurve& curve, float s, float depth, float pixels) const override;
+  bool at(StrandCurve& curve, float s, CurvePoint& point) const override;
+  float step(StrandCurve& curve, float s, float depth, float pixels) const override;
 
  private:
-  StrandSurface surface(const StrandCurve& curve, float s) const;
+  /// Its control points in camera space.
+  void load(StrandCurve& curve, std::uint32_t span) const;
 
   const Scene* scene_;
   CameraView view_;

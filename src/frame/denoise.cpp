@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/pixel_mask.h"
 #include "filter/anisotropic.h"
 #include "filter/fill_holes.h"
 #include "filter/link.h"
-#include "filter/pixel_mask.h"
 #include "filter/sample_curves.h"
 #include "filter/sample_noise.h"
 #include "filter/strand_curves.h"
@@ -66,7 +66,8 @@ Buffer<Vec4> seen_background(HairSamples& s) {
 /// What linking works on: the part of the picture around its hair, and what all of it shows without. Samples of the opaque scene
 /// are its depth; where hair is, nobody needs to know it.
 LinkInput make_input(HairSamples s, const Buffer<VisibilitySample>& visibility, int side) {
-  LinkInput input{{}, {s.width, s.height, seen_background(s), {}}};
+  LinkInput input;
+  input.behind.width = s.width, input.behind.height = s.height, input.behind.color = seen_background(s);
   input.behind.depth.resize(s.strand.size());
   parallel_for(s.strand.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
@@ -90,6 +91,7 @@ LinkInput make_input(HairSamples s, const Buffer<VisibilitySample>& visibility, 
   };
   cut(visibility, layer.visibility), cut(s.depth, layer.depth), cut(s.color, layer.color);
   cut(s.coverage, layer.coverage), cut(input.behind.depth, layer.opaque_depth);
+  mark_hair(layer);
   return input;
 }
 
@@ -139,7 +141,7 @@ Buffer<VisibilitySample> visibility_of_groom(const Scene& scene, const HairSampl
       visibility[p] = {}, off[p] = 0;
       if (!samples.is_hair(p)) continue;
       const GroomPlace place = places.at(p);
-      const StrandCurve curve = curves.curve_of(place.primitive);
+      StrandCurve curve = curves.curve_of(place.primitive);
       CurvePoint point;
       off[p] = INFINITY;
       if (!curves.at(curve, static_cast<float>(place.primitive - curve.first_primitive) + place.t, point)) continue;

@@ -7,11 +7,11 @@
 
 #include "composite/composite.h"
 #include "core/parallel.h"
+#include "core/pixel_mask.h"
 #include "filter/alpha_fix.h"
 #include "filter/anisotropic.h"
 #include "filter/link.h"
 #include "filter/matte.h"
-#include "filter/pixel_mask.h"
 #include "raster/keys.h"
 #include "raster/opaque.h"
 #include "raster/raster.h"
@@ -23,21 +23,6 @@ namespace {
 constexpr Vec2 kPixelCenter{0.5f, 0.5f};
 constexpr std::size_t kPixelsPerTask = 1 << 14;
 
-/// What is behind the hair of every pixel.
-Behind behind_hair(const FrameInputs& inputs, Buffer<float> opaque_depth, const OpaqueLayer& opaque) {
-  const Backdrop backdrop = make_backdrop(inputs.scene, inputs.view);
-  Behind behind{inputs.view.width, inputs.view.height, {}, std::move(opaque_depth)};
-  behind.color.resize(static_cast<std::size_t>(behind.width) * static_cast<std::size_t>(behind.height));
-  parallel_for(behind.color.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const bool mesh = !behind.depth.empty() && behind.depth[p] < INFINITY;
-      const Vec3 c = mesh ? opaque_color(opaque, p) : backdrop.pixels.empty() ? backdrop.color : backdrop.pixels[p];
-      behind.color[p] = {c.x, c.y, c.z, mesh ? 1.f : backdrop.alpha};
-    }
-  });
-  return behind;
-}
-
 /// What the layer's pixels show, from the evaluations of shade; `depth` of the opaque scene and `coverage` are those of the
 /// whole picture, or empty.
 void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radiance& radiance,
@@ -47,6 +32,7 @@ void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radia
   layer.visibility.resize(pixels), layer.depth.resize(pixels), layer.color.resize(pixels);
   if (!depth.empty()) layer.opaque_depth.resize(pixels);
   if (!coverage.empty()) layer.coverage.resize(pixels);
+  layer.hair = PixelMask(layer.width, layer.height);
   parallel_for(static_cast<std::size_t>(layer.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
     for (std::size_t y = first, p = first * width; y < last; ++y) {
       const std::size_t row = (y + static_cast<std::size_t>(layer.top)) * static_cast<std::size_t>(picture_width) +
@@ -54,6 +40,7 @@ void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radia
       for (std::size_t q = row; q < row + width; ++q, ++p) {
         const std::uint32_t i = radiance.index[q];
         const bool hair = i != Radiance::kNone;
+        if (hair) layer.hair.add(static_cast<int>(q - row), static_cast<int>(y));
         layer.visibility[p] = hair ? samples[i] : VisibilitySample();
         layer.depth[p] = hair ? key_depth(keys[q]) : INFINITY;
         layer.color[p] = hair ? radiance.color[i] : Vec3();
@@ -137,7 +124,12 @@ LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage
     const auto is_hair = [&](std::size_t p) { return radiance.index[p] != Radiance::kNone; };
     place_layer(PixelMask(inputs.view.width, inputs.view.height, is_hair), input.layer);
     spread_samples(gbuffer.center, inputs.view.width, radiance, samples, gbuffer.opaque_depth, covered, input.layer);
-    input.behind = behind_hair(inputs, std::move(gbuffer.opaque_depth), opaque);
+    input.behind = {inputs.view.width,
+                    inputs.view.height,
+                    std::move(gbuffer.opaque_depth),
+                    std::move(opaque),
+                    make_backdrop(inputs.scene, inputs.view),
+                    {}};
     return StageWork{pixels, bytes_of(input)};
   });
   return input;
@@ -154,6 +146,7 @@ Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderS
       return StageWork{pixels, links.fills.capacity() * sizeof(Fill)};
     });
   Matte matte;
+  Buffer<Vec4> filtered;
   AlphaStats stats;
   AnisotropicKernel kernel, color_kernel;
   stages.run("filter.alpha", "pixels", [&](const Progress&) {
@@ -168,12 +161,12 @@ Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderS
   if (settings.link.filter)
     stages.run("filter.anisotropic", "pixels", [&](const Progress&) {
       extend_tangents(matte, layer);
-      matte = filter_apart(matte, kernel, color_kernel);
-      return StageWork{pixels, matte.bytes()};
+      filtered = filter_apart(matte, kernel, color_kernel);
+      return StageWork{pixels, filtered.bytes()};
     });
   Image linear;
   stages.run("composite", "pixels", [&](const Progress&) {
-    linear = lay_over(matte, layer, input.behind, settings.exposure);
+    linear = lay_over(matte, filtered, layer, input.behind, settings.exposure);
     return StageWork{linear.pixels.size() / 4, linear.pixels.size() * sizeof(float)};
   });
   return linear;

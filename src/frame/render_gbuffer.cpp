@@ -53,7 +53,7 @@ class PixelWriter {
   void write(int x, int y, float* out) const {
     const Behind& behind = input_.behind;
     const auto q = static_cast<std::size_t>(y) * static_cast<std::size_t>(behind.width) + static_cast<std::size_t>(x);
-    const Vec4 back = behind.color[q];
+    const Vec4 back = behind.at(q);
     const Vec3 back_color = Vec3(back.x, back.y, back.z) * light_;
     const std::optional<std::size_t> p = in_layer(x, y);
     if (p && input_.layer.visibility[*p].is_hair()) {

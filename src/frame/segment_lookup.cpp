@@ -9,26 +9,18 @@
 namespace pelage {
 namespace {
 
-/// The four control points that a span blends, phantom ends included, and the widths at its two ends.
+/// The four control points that a span blends, and the widths at its two ends.
 struct Span {
   Vec3 p[4];
   float width[2];
 };
 
 Span load_span(const StrandSet& set, std::uint32_t strand, std::uint32_t span) {
-  const std::uint32_t begin = set.offsets[strand], end = set.offsets[strand + 1];
   Span r;
-  if (set.basis == CurveBasis::kBezier) {
-    const std::uint32_t first = begin + 3 * span;
-    for (std::uint32_t i = 0; i < 4; ++i) r.p[i] = set.points[first + i];
-    r.width[0] = set.width(first), r.width[1] = set.width(first + 3);
-    return r;
-  }
-  const std::uint32_t i = begin + span;
-  r.p[1] = set.points[i], r.p[2] = set.points[i + 1];
-  r.p[0] = i > begin ? set.points[i - 1] : r.p[1] * 2.f - r.p[2];
-  r.p[3] = i + 2 < end ? set.points[i + 2] : r.p[2] * 2.f - r.p[1];
-  r.width[0] = set.width(i), r.width[1] = set.width(i + 1);
+  span_points(set, strand, span, r.p);
+  const bool bezier = set.basis == CurveBasis::kBezier;
+  const std::uint32_t first = set.offsets[strand] + (bezier ? 3 * span : span);
+  r.width[0] = set.width(first), r.width[1] = set.width(first + (bezier ? 3 : 1));
   return r;
 }
 
@@ -40,7 +32,27 @@ Vec3 direction(const Span& s, CurveBasis basis, float t) {
   return {0, 1, 0};
 }
 
+/// The strand that point `place` of a set belongs to.
+std::uint32_t find_strand(const std::vector<std::uint32_t>& offsets, std::uint32_t place) {
+  const std::uint64_t strands = offsets.size() - 1;
+  const std::uint64_t guess = std::min(place * strands / offsets.back(), strands - 1);
+  if (offsets[guess] <= place && place < offsets[guess + 1]) return static_cast<std::uint32_t>(guess);
+  return static_cast<std::uint32_t>(std::upper_bound(offsets.begin(), offsets.end(), place) - offsets.begin() - 1);
+}
+
 }  // namespace
+
+void span_points(const StrandSet& set, std::uint32_t strand, std::uint32_t span, Vec3 (&p)[4]) {
+  const std::uint32_t begin = set.offsets[strand], end = set.offsets[strand + 1];
+  if (set.basis == CurveBasis::kBezier) {
+    for (std::uint32_t i = 0; i < 4; ++i) p[i] = set.points[begin + 3 * span + i];
+    return;
+  }
+  const std::uint32_t i = begin + span;
+  p[1] = set.points[i], p[2] = set.points[i + 1];
+  p[0] = i > begin ? set.points[i - 1] : p[1] * 2.f - p[2];
+  p[3] = i + 2 < end ? set.points[i + 2] : p[2] * 2.f - p[1];
+}
 
 SegmentRef find_segment(const Scene& scene, const SegmentNumbering& numbering, std::uint32_t id) {
   const auto& base = numbering.groom_base;
@@ -51,7 +63,7 @@ SegmentRef find_segment(const Scene& scene, const SegmentNumbering& numbering, s
   const std::uint32_t local = id - base[r.groom], place = local / subdivisions;
   r.k = local % subdivisions;
   const auto& offsets = scene.grooms[r.groom].strands->offsets;
-  r.strand = static_cast<std::uint32_t>(std::upper_bound(offsets.begin(), offsets.end(), place) - offsets.begin() - 1);
+  r.strand = find_strand(offsets, place);
   r.span = place - offsets[r.strand];
   return r;
 }

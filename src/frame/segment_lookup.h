@@ -23,8 +23,12 @@ struct StrandSurface {
   float width = 0;  ///< diameter, metres
 };
 
-/// The segment with this id, by binary search over the offsets: O(log strands). `id` must be one that raster wrote.
+/// The segment with this id: where strands have equally many points at once, else by binary search over the offsets, O(log
+/// strands). `id` must be one that raster wrote.
 SegmentRef find_segment(const Scene& scene, const SegmentNumbering& numbering, std::uint32_t id);
+
+/// The four control points that a span blends, in object space, phantom ends included.
+void span_points(const StrandSet& set, std::uint32_t strand, std::uint32_t span, Vec3 (&points)[4]);
 
 /// The curve of segment `s` at t ∈ [0, 1] (0 where it starts). The tangent of a curve that stands still is taken from
 /// the control points around it; (0, 1, 0) where all of them coincide.

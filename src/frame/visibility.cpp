@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "frame/camera_view.h"
 
 namespace pelage {
@@ -21,6 +23,17 @@ SegmentNumbering number_spans(const Scene& scene) {
   }
   spans.groom_base.push_back(static_cast<std::uint32_t>(count));
   return spans;
+}
+
+void mark_hair(StrandLayer& layer) {
+  layer.hair = {layer.width, layer.height, [&](std::size_t p) { return layer.visibility[p].is_hair(); }};
+}
+
+Vec4 Behind::at(std::size_t p) const {
+  if (!color.empty()) return color[p];
+  const bool mesh = !depth.empty() && depth[p] < INFINITY;
+  const Vec3 c = mesh ? opaque_color(opaque, p) : backdrop.pixels.empty() ? backdrop.color : backdrop.pixels[p];
+  return {c.x, c.y, c.z, mesh ? 1.f : backdrop.alpha};
 }
 
 VisibilityPacker::VisibilityPacker(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering)

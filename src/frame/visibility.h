@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/buffer.h"
+#include "core/pixel_mask.h"
 #include "frame/frame.h"
 #include "frame/segment_lookup.h"
 
@@ -59,17 +60,26 @@ struct StrandLayer {
   int left = 0, top = 0;                ///< visibility pixel of the picture that its first one is, multiples of side
   int side = 1;                         ///< visibility pixels a side of a screen pixel
   Buffer<VisibilitySample> visibility;  ///< [h·w]
+  PixelMask hair;                       ///< where these show hair, hit or filled
   Buffer<float> depth;                  ///< [h·w] camera z of the strand, metres; +inf for none
   Buffer<Vec3> color;                   ///< [h·w] its scene-linear radiance; 0 for none
   Buffer<float> coverage;               ///< [h·w] share of the pixel that strands cover, 0…1; or empty where nobody knows
   Buffer<float> opaque_depth;           ///< [h·w] camera z of the opaque scene, +inf for none; or empty without one
 };
 
+/// Makes layer.hair what layer.visibility shows.
+void mark_hair(StrandLayer& layer);
+
 /// What all of the picture shows without hair, by visibility pixel.
 struct Behind {
   int width = 0, height = 0;  ///< visibility pixels
-  Buffer<Vec4> color;         ///< [h·w] linear, premultiplied R, G, B, A
   Buffer<float> depth;        ///< [h·w] camera z of the opaque scene, metres, +inf for none; or empty without one
+  OpaqueLayer opaque;         ///< its colors; its own depth is moved to the above
+  Backdrop backdrop;          ///< what is seen elsewhere
+  Buffer<Vec4> color;         ///< [h·w] instead of all that: linear, premultiplied R, G, B, A; or empty
+
+  /// Of pixel p = y·width + x: linear, premultiplied R, G, B, A.
+  Vec4 at(std::size_t p) const;
 };
 
 }  // namespace pelage

@@ -1,4 +1,4 @@
-#include "filter/pixel_mask.h"
+#include "core/pixel_mask.h"
 
 #include "core/check.h"
 
@@ -8,6 +8,17 @@ PixelMask::PixelMask(int width, int height)
     : width_(width), height_(height), stride_(static_cast<std::size_t>(width + kBits - 1) / kBits),
       words_(stride_ * static_cast<std::size_t>(height)) {
   PELAGE_CHECK(width >= 0 && height >= 0);
+}
+
+std::uint64_t PixelMask::bits(int x, int y, int count) const {
+  if (y < 0 || y >= height_) return 0;
+  const auto at = [&](int w) {
+    return w >= 0 && w < static_cast<int>(stride_) ? words_[static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(w)]
+                                                   : 0;
+  };
+  const int w = x >= 0 ? x / kBits : (x + 1) / kBits - 1, shift = x - w * kBits;
+  const std::uint64_t found = at(w) >> shift | (shift ? at(w + 1) << (kBits - shift) : 0);
+  return count < kBits ? found & ((std::uint64_t{1} << count) - 1) : found;
 }
 
 PixelMask PixelMask::grown(int reach) const {

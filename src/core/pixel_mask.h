@@ -36,6 +36,13 @@ class PixelMask {
   /// False outside the picture.
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_ && word(x, y) >> (x % kBits) & 1; }
   void add(int x, int y) { words_[index(x, y)] |= bit(x); }
+  void remove(int x, int y) { words_[index(x, y)] &= ~bit(x); }
+  /// Pixel p = y·width + x.
+  void add(std::size_t p) { add(column(p), row(p)); }
+  void remove(std::size_t p) { remove(column(p), row(p)); }
+
+  /// Bit i of the result: whether (x + i, y) is in the set, for i < count ≤ 64; those outside the picture are not.
+  std::uint64_t bits(int x, int y, int count) const;
 
   /// The pixels within `reach` ≥ 0 pixels in x and in y of one that is in the set.
   PixelMask grown(int reach) const;
@@ -45,7 +52,8 @@ class PixelMask {
   PixelBox box() const;
   std::size_t count() const;
 
-  /// f(x, y) for the set's pixels in rows first ≤ y < last, by y, then x.
+  /// f(x, y) for the set's pixels in rows first ≤ y < last, 64 columns at a time, in these by y, then x: what lies around them
+  /// stays in the cache.
   template <class F>
   void for_each(std::size_t first, std::size_t last, const F& f) const;
   /// The same over all rows, kRowsPerTask rows a task.
@@ -58,6 +66,8 @@ class PixelMask {
  private:
   static constexpr int kBits = 64;
   static std::uint64_t bit(int x) { return std::uint64_t{1} << (x % kBits); }
+  int column(std::size_t p) const { return static_cast<int>(p % static_cast<std::size_t>(width_)); }
+  int row(std::size_t p) const { return static_cast<int>(p / static_cast<std::size_t>(width_)); }
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x / kBits); }
   std::uint64_t word(int x, int y) const { return words_[index(x, y)]; }
   template <class Combine>
@@ -85,8 +95,8 @@ PixelMask::PixelMask(int width, int height, const IsIn& is_in) : PixelMask(width
 
 template <class F>
 void PixelMask::for_each(std::size_t first, std::size_t last, const F& f) const {
-  for (std::size_t y = first; y < last; ++y)
-    for (std::size_t w = 0; w < stride_; ++w)
+  for (std::size_t w = 0; w < stride_; ++w)
+    for (std::size_t y = first; y < last; ++y)
       for (std::uint64_t bits = words_[y * stride_ + w]; bits != 0; bits &= bits - 1)
         f(static_cast<int>(w) * kBits + std::countr_zero(bits), static_cast<int>(y));
 }

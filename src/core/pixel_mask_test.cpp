@@ -1,5 +1,5 @@
 // Sets of pixels against sets of pairs.
-#include "filter/pixel_mask.h"
+#include "core/pixel_mask.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,7 @@ Pixels pixels_of(const PixelMask& mask) {
   Pixels found;
   mask.for_each(0, static_cast<std::size_t>(mask.height()), [&](int x, int y) {
     EXPECT_TRUE(mask.contains(x, y));
-    EXPECT_TRUE(found.empty() || *found.rbegin() < std::pair(y, x));  // in order
-    found.insert({y, x});
+    EXPECT_TRUE(found.insert({y, x}).second);
   });
   EXPECT_EQ(found.size(), mask.count());
   return found;
@@ -42,6 +41,19 @@ TEST(PixelMask, HoldsWhatIsIn) {
       EXPECT_FALSE(thirds.contains(x, y));
     pixels_of(thirds);
   }
+}
+
+TEST(PixelMask, GivesBitsOfARow) {
+  PixelMask mask = random_mask(150, 3, 0.5f, 9);
+  mask.remove(77, 1), mask.add(78, 1);
+  EXPECT_TRUE(!mask.contains(77, 1) && mask.contains(78, 1));
+  for (int y = -1; y <= 3; ++y)
+    for (int x = -70; x < 160; ++x)
+      for (const int count : {1, 5, 63, 64}) {
+        const std::uint64_t bits = mask.bits(x, y, count);
+        for (int i = 0; i < 64; ++i)
+          ASSERT_EQ(bits >> i & 1, i < count && mask.contains(x + i, y)) << x << " " << y << " " << i;
+      }
 }
 
 TEST(PixelMask, GrowsByPixelsInXAndY) {
