@@ -15,6 +15,18 @@ Vec3 across(Vec3 tangent, Vec3 w) {
 float sine_along(Vec3 tangent, Vec3 w) { return kernel::v_clamp(dot(w, tangent), -1, 1); }
 float cosine_of(float sine) { return std::sqrt(1 - sine * sine); }
 
+/// m_cos() and m_sin() of one angle, which is reduced once for both.
+Vec2 cos_sin(float x) {
+  const float n = kernel::m_quadrant(x), r = kernel::m_reduce(x, n);
+  const float c = kernel::m_cos_poly(r), s = kernel::m_sin_poly(r);
+  switch (static_cast<int>(n) & 3) {
+    case 1: return {-s, c};
+    case 2: return {-c, -s};
+    case 3: return {s, -c};
+    default: return {c, s};
+  }
+}
+
 }  // namespace
 
 FiberBsdf::Model FiberBsdf::make_model(const FiberView& view) {
@@ -54,8 +66,8 @@ float FiberBsdf::pdf(Vec3 to_light) const {
 }
 
 Vec3 FiberBsdf::world(const kernel::ScatterDirection& d) const {
-  const Vec3 in_plane = across_ * kernel::m_cos(d.phi) + side_ * kernel::m_sin(d.phi);
-  return normalize(tangent_ * d.sin_i + in_plane * d.cos_i);
+  const Vec2 around = cos_sin(d.phi);
+  return tangent_ * d.sin_i + (across_ * around.x + side_ * around.y) * d.cos_i;
 }
 
 FiberSample FiberBsdf::sample(std::array<float, 4> u) const {

@@ -12,11 +12,11 @@ namespace {
 constexpr float kLeastCosine = 1e-4f;  ///< as scatter_prepare_marschner() has it
 constexpr float kOverFourPi = 0.0795774715459477f;
 
-ScatterPair pair_of(float kappa, float cos_mu) {
-  return {kappa, cos_mu, std::sqrt(std::max(1 - cos_mu * cos_mu, 0.f)), kOverFourPi / scatter_i0e(kappa)};
-}
-
 }  // namespace
+
+ScatterPair completed(const ScatterPair& p) {
+  return {p.kappa, p.cos_mu, std::sqrt(std::max(1 - p.cos_mu * p.cos_mu, 0.f)), kOverFourPi / scatter_i0e(p.kappa)};
+}
 
 MarschnerTable::MarschnerTable(const ScatterFiber& f)
     : fixed_(scatter_prepare_marschner(f, 0, 1)), r_(-2 * f.tilt, f.v_r), tt_(f.tilt, f.v_tt), trt_(3 * f.tilt, f.v_trt) {
@@ -41,7 +41,7 @@ ScatterLobes MarschnerTable::lobes(float sin_o, float cos_o_raw) const {
   l.sin_o = sin_o, l.cos_o = cos_o;
   l.r = r_.seen_from(sin_o, cos_o), l.tt = tt_.seen_from(sin_o, cos_o), l.trt = trt_.seen_from(sin_o, cos_o);
   l.a_r = v[0], l.a_tt = {v[1], v[2], v[3]}, l.a_trt = {v[4], v[5], v[6]}, l.a_rest = {v[7], v[8], v[9]};
-  l.n_tt = pair_of(v[10], v[11]), l.n_trt = pair_of(v[12], v[13]);
+  l.n_tt.kappa = v[10], l.n_tt.cos_mu = v[11], l.n_trt.kappa = v[12], l.n_trt.cos_mu = v[13];
   return l;
 }
 

@@ -14,6 +14,9 @@ namespace pelage {
 /// elsewhere in azimuth. That is largest where the two lobes of a pair meet, which they do like a root.
 inline constexpr float kMarschnerTableMaxAbsError = 1e-4f, kMarschnerTableMaxMisplaced = 2e-3f;
 
+/// A pair of azimuthal lobes from what tells it apart, kappa and cos_mu.
+kernel::ScatterPair completed(const kernel::ScatterPair& pair);
+
 /// A longitudinal lobe that waits for θ_o: scatter_cone() without what does not depend on it.
 class ConeShape {
  public:
@@ -41,6 +44,7 @@ class MarschnerTable {
   explicit MarschnerTable(const kernel::ScatterFiber& fiber);
 
   bool empty() const { return rows_.empty(); }
+  /// Of the pairs only kappa and cos_mu.
   kernel::ScatterLobes lobes(float sin_o, float cos_o) const;
 
  private:
@@ -63,7 +67,7 @@ class FiberMaterial {
   const HairMaterial& material() const { return material_; }
   /// `strand_color` as for make_fiber().
   kernel::ScatterFiber fiber(Vec3 strand_color) const { return one_color() ? fiber_ : make_fiber(material_, strand_color); }
-  /// scatter_prepare_marschner(), or the same from the table.
+  /// scatter_prepare_marschner(), or the same from the table; of the pairs only kappa and cos_mu.
   kernel::ScatterLobes marschner(Vec3 strand_color, float sin_o, float cos_o) const;
   /// scatter_prepare_chiang().
   kernel::ScatterNear chiang(Vec3 strand_color, float sin_o, float cos_o, float h) const;

@@ -56,55 +56,65 @@ inline Vec3 over_chance(Vec3 energy, float chance) { return chance > 0 ? energy 
 
 /// A pair of azimuthal lobes as sampling.h draws it: scatter_sample_pair() and scatter_pdf_pair() with what all directions share.
 struct PairDensity {
-  explicit PairDensity(const ScatterPair& n) : mu(scatter_pair_mu(n)), rate(scatter_pair_rate(n.kappa)) {}
+  explicit PairDensity(const ScatterPair& n)
+      : mu(scatter_pair_mu(n)), rate(scatter_pair_rate(n.kappa)), mass(scatter_logistic_mass(rate)) {}
 
-  float density(float x) const {
-    return 0.5f * (scatter_logistic(scatter_wrap(x - mu), rate) + scatter_logistic(scatter_wrap(x + mu), rate));
-  }
+  float density(float x) const { return 0.5f * rate / mass * (shape(scatter_wrap(x - mu)) + shape(scatter_wrap(x + mu))); }
   float sample(float u) const {
     return u < 0.5f ? scatter_sample_logistic(u + u, rate) - mu : scatter_sample_logistic(u + u - 1, rate) + mu;
   }
 
-  float mu, rate;
+  float mu, rate, mass;
+
+ private:
+  /// scatter_logistic() but for its factors.
+  float shape(float x) const {
+    const float e = m_exp(-(abs(x) * rate));
+    return e / ((1 + e) * (1 + e));
+  }
 };
 
-/// R, TT, TRT and what remains, each a cone times an azimuthal lobe.
+/// R, TT, TRT and what remains, each a cone times an azimuthal lobe. Azimuthal pairs are completed where they are asked for:
+/// a drawn direction needs one of them, R and what remains none.
 struct Marschner {
   explicit Marschner(const FiberView& v) : lobes(v.material.marschner(v.strand_color, v.sin_o, v.cos_o)) {}
 
-  Vec3 value(FiberAngles a) const { return scatter_marschner(lobes, a.sin_i, a.cos_i, m_cos(a.phi)); }
+  Vec3 value(FiberAngles a) const {
+    ScatterLobes all = lobes;
+    all.n_tt = completed(lobes.n_tt), all.n_trt = completed(lobes.n_trt);
+    return scatter_marschner(all, a.sin_i, a.cos_i, m_cos(a.phi));
+  }
   float density(FiberAngles a) const { return weigh(a).density; }
   /// scatter_marschner() and scatter_pdf_marschner(), whose cones are the same.
   FiberWeight weigh(FiberAngles a) const {
     const float cos_phi = m_cos(a.phi), sin_phi = scatter_sin_phi(cos_phi);
+    const ScatterPair n_tt = completed(lobes.n_tt), n_trt = completed(lobes.n_trt);
     const float r = scatter_cone_value(lobes.r, a.sin_i, a.cos_i), tt = scatter_cone_value(lobes.tt, a.sin_i, a.cos_i),
                 trt = scatter_cone_value(lobes.trt, a.sin_i, a.cos_i), rest = trt * kInvTwoPi;
     return {v_splat(r * scatter_reflection(lobes, cos_phi)) +
-                lobes.a_tt * (tt * scatter_pair_value(lobes.n_tt, -cos_phi, sin_phi, 0)) +
-                lobes.a_trt * (trt * scatter_pair_value(lobes.n_trt, cos_phi, sin_phi, 0)) + lobes.a_rest * rest,
-            choice.r * r * scatter_pdf_reflection(lobes, a.phi) + choice.tt * tt * around_tt.density(a.phi - kPi) +
-                choice.trt * trt * around_trt.density(a.phi) + choice.rest * rest};
+                lobes.a_tt * (tt * scatter_pair_value(n_tt, -cos_phi, sin_phi, 0)) +
+                lobes.a_trt * (trt * scatter_pair_value(n_trt, cos_phi, sin_phi, 0)) + lobes.a_rest * rest,
+            choice.r * r * scatter_pdf_reflection(lobes, a.phi) + choice.tt * tt * PairDensity(n_tt).density(a.phi - kPi) +
+                choice.trt * trt * PairDensity(n_trt).density(a.phi) + choice.rest * rest};
   }
   /// scatter_sample_marschner(), which draws from every lobe, drawing from the chosen one alone.
-  ScatterDirection sample(Vec4 u) const {
-    const float lobe = scatter_chosen(choice, u.x);
-    if (lobe == 0) return in_cone(lobes.r, u, scatter_sample_reflection(lobes, u.w), lobe);
-    if (lobe == 1) return in_cone(lobes.tt, u, kPi + around_tt.sample(u.w), lobe);
-    return in_cone(lobes.trt, u, lobe == 2 ? around_trt.sample(u.w) : kTwoPi * u.w, lobe);
-  }
+  ScatterDirection sample(Vec4 u) const { return draw(u).to; }
   /// Cones are drawn exactly: what is left of a lobe's weight is azimuthal.
   DrawnDirection draw(Vec4 u) const {
-    const ScatterDirection d = sample(u);
-    const float cos_phi = m_cos(d.phi), sin_phi = scatter_sin_phi(cos_phi);
-    if (d.lobe == 0)
-      return {d, over_chance(v_splat(scatter_reflection(lobes, cos_phi)), choice.r * scatter_pdf_reflection(lobes, d.phi))};
-    if (d.lobe == 1)
-      return {d, over_chance(lobes.a_tt * scatter_pair_value(lobes.n_tt, -cos_phi, sin_phi, 0),
-                             choice.tt * around_tt.density(d.phi - kPi))};
-    if (d.lobe == 2)
-      return {d, over_chance(lobes.a_trt * scatter_pair_value(lobes.n_trt, cos_phi, sin_phi, 0),
-                             choice.trt * around_trt.density(d.phi))};
-    return {d, over_chance(lobes.a_rest, choice.rest)};
+    const float lobe = scatter_chosen(choice, u.x);
+    if (lobe == 0) {
+      const float phi = scatter_sample_reflection(lobes, u.w);
+      const float share = choice.r * scatter_pdf_reflection(lobes, phi);
+      return {in_cone(lobes.r, u, phi, lobe), over_chance(v_splat(scatter_reflection(lobes, m_cos(phi))), share)};
+    }
+    if (lobe == 3) return {in_cone(lobes.trt, u, kTwoPi * u.w, lobe), over_chance(lobes.a_rest, choice.rest)};
+    const bool tt = lobe == 1;
+    const ScatterPair pair = completed(tt ? lobes.n_tt : lobes.n_trt);
+    const PairDensity around(pair);
+    const float x = around.sample(u.w), cos_x = m_cos(x);  // from the pair's center
+    return {in_cone(tt ? lobes.tt : lobes.trt, u, tt ? kPi + x : x, lobe),
+            over_chance((tt ? lobes.a_tt : lobes.a_trt) * scatter_pair_value(pair, cos_x, scatter_sin_phi(cos_x), 0),
+                        (tt ? choice.tt : choice.trt) * around.density(x))};
   }
   Vec3 albedo() const { return v_splat(lobes.a_r) + lobes.a_tt + lobes.a_trt + lobes.a_rest; }
   void keep(int lobe) {
@@ -113,9 +123,8 @@ struct Marschner {
     if (lobe != 2) lobes.a_trt = kNone;
     if (lobe != 3) lobes.a_rest = kNone;
   }
-  ScatterLobes lobes;
+  ScatterLobes lobes;  ///< of the pairs only kappa and cos_mu
   ScatterChoice choice = scatter_choice_of(lobes);
-  PairDensity around_tt{lobes.n_tt}, around_trt{lobes.n_trt};
 };
 
 /// draw() of models whose lobes are weighed together.

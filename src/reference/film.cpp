@@ -74,8 +74,9 @@ void add_sample(Film& film, std::size_t at, const PathSample& s) {
     p.groom = s.hair ? s.groom + 1 : 0, p.strand = s.hair ? s.strand + 1 : 0;
   }
   for (std::size_t b = 0; !film.bounces.empty() && b < Film::kBounces; ++b)
-    add(film.bounces[at * Film::kBounces + b], s.bounces[b]);
-  for (std::size_t l = 0; !film.lobes.empty() && l < Film::kLobes; ++l) add(film.lobes[at * Film::kLobes + l], s.lobes[l]);
+    add(film.bounces[at * Film::kBounces + b], s.split->bounces[b]);
+  for (std::size_t l = 0; !film.lobes.empty() && l < Film::kLobes; ++l)
+    add(film.lobes[at * Film::kLobes + l], s.split->lobes[l]);
 }
 
 float picture_noise(const Film& film) {

@@ -33,7 +33,7 @@ static_assert(sizeof(FilmPixel) == 11 * sizeof(double) + 16 * sizeof(float));
 /// The state of a picture on its way. Pixels may stand at different sample counts (after a cancellation): each is a
 /// prefix of its own samples.
 struct Film {
-  static constexpr std::size_t kBounces = PathSample::kBounces, kLobes = PathSample::kLobes;
+  static constexpr std::size_t kBounces = PathSplit::kBounces, kLobes = PathSplit::kLobes;
 
   Film() = default;
   Film(int width, int height, bool with_bounces, bool with_lobes);

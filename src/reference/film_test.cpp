@@ -18,8 +18,9 @@ PathSample random_sample(Rng& rng) {
   s.albedo = {0.2f, rng.uniform(), 0.1f};
   s.depth = s.alpha > 0 ? 1 + rng.uniform() : INFINITY;
   s.groom = 0, s.strand = static_cast<std::uint32_t>(100 * rng.uniform());
-  s.bounces[0] = s.radiance;
-  s.lobes[1] = s.radiance;
+  s.split.emplace();
+  s.split->bounces[0] = s.radiance;
+  s.split->lobes[1] = s.radiance;
   return s;
 }
 

@@ -11,6 +11,7 @@
 #include "reference/light_sampler.h"
 #include "reference/ray_scene.h"
 #include "reference/sequence.h"
+#include "reference/silhouette.h"
 #include "reference/vertex.h"
 
 namespace pelage {
@@ -25,7 +26,7 @@ float power_heuristic(float p, float q) {
   return 1 / (1 + r * r);
 }
 
-using Shares = std::array<Vec3, PathSample::kLobes>;
+using Shares = std::array<Vec3, PathSplit::kLobes>;
 
 /// Share of each lobe in what `bsdf` scatters from `to_light`.
 Shares lobe_shares(const Bsdf& bsdf, Vec3 to_light) {
@@ -43,14 +44,13 @@ Shares lobe_shares(const Bsdf& bsdf, Vec3 to_light) {
 /// Adds up what a path finds.
 struct Tally {
   PathSample& result;
-  bool split;
   Shares shares{};  ///< of the first hit's lobes in what comes along the path after it
 
   void add(Vec3 radiance, int scatterings) {
     result.radiance += radiance;
-    if (!split) return;
-    result.bounces[std::min(static_cast<std::size_t>(scatterings), PathSample::kBounces - 1)] += radiance;
-    for (std::size_t k = 0; k < shares.size(); ++k) result.lobes[k] += radiance * shares[k];
+    if (!result.split) return;
+    result.split->bounces[std::min(static_cast<std::size_t>(scatterings), PathSplit::kBounces - 1)] += radiance;
+    for (std::size_t k = 0; k < shares.size(); ++k) result.split->lobes[k] += radiance * shares[k];
   }
 };
 
@@ -80,6 +80,7 @@ struct PathTracer::State {
   std::vector<MeshMaterial> mesh_materials;
   bool environment_visible;
   RayScene rays;
+  Silhouette silhouette;
   LightSampler lights;
   bool seek_environment;  ///< by rays toward it
   std::optional<DualLight> dual;
@@ -100,7 +101,7 @@ struct PathTracer::State {
   ScatteredRay scatter_ray(const Vertex& vertex, std::array<float, 4> u, int depth) const;
   void transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const;
   void gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random, Tally& tally) const;
-  Vec3 color_of(std::uint32_t groom, const StrandPlace& place) const;
+  Vec3 color_of(const SceneHit& hit) const;
   PathSample sample(int x, int y, std::uint32_t index) const;
 };
 
@@ -110,8 +111,9 @@ PathTracer::State::State(const Scene& scene, const PathSettings& s)
                                       : view),
       grooms(scene.grooms), fibers(fibers_of(grooms)), mesh_materials(materials(scene.meshes)),
       environment_visible(scene.environment.visible),
-      rays(scene, s.integrator == Integrator::kDual ? CurveShape::kFlat : s.curve_shape), lights(scene) {
+      rays(scene, s.integrator == Integrator::kDual ? CurveShape::kFlat : s.curve_shape), silhouette(view), lights(scene) {
   PELAGE_CHECK(settings.max_bounces >= 1);
+  rays.add_to(silhouette);
   if (settings.integrator == Integrator::kSingle) settings.max_bounces = 1;
   if (settings.integrator == Integrator::kDual) dual.emplace(grooms);
   // An environment that is the same everywhere is best found by the rays that scatter: their density is the integrand's.
@@ -120,10 +122,11 @@ PathTracer::State::State(const Scene& scene, const PathSettings& s)
 }
 
 /// Of a strand where it was met; its material looks at it only where colors are the strands' own.
-Vec3 PathTracer::State::color_of(std::uint32_t groom, const StrandPlace& place) const {
-  const GroomInstance& g = grooms[groom];
-  const bool own = g.material.color_source == HairMaterial::ColorSource::kStrand;
-  return own ? strand_color(g, place.strand, place.span) : g.material.color;
+Vec3 PathTracer::State::color_of(const SceneHit& hit) const {
+  const GroomInstance& g = grooms[hit.object];
+  if (g.material.color_source != HairMaterial::ColorSource::kStrand) return g.material.color;
+  const StrandLabel label = rays.strand_label(hit);
+  return strand_color(g, label.strand, label.span);
 }
 
 /// What the ray met, ready to scatter toward the ray's origin.
@@ -131,11 +134,11 @@ Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
   const Vec3 to_eye = normalize(-ray.direction);
   if (hit.kind == SceneHit::Kind::kStrand) {
     const StrandPlace place = rays.strand_place(hit);
-    const Vec3 color = color_of(hit.object, place);
     const Vec3 off_axis = ray.origin + ray.direction * hit.distance - place.axis,
                side = normalize(cross(to_eye, place.tangent));
     const float h = place.radius > 0 ? std::clamp(dot(off_axis, side) / place.radius, -1.f, 1.f) : 0.f;
-    return {place.axis, place.tangent, {}, place.radius, FiberBsdf(fibers[hit.object], color, place.tangent, to_eye, h)};
+    return {
+        place.axis, place.tangent, {}, place.radius, FiberBsdf(fibers[hit.object], color_of(hit), place.tangent, to_eye, h)};
   }
   Surface s = rays.surface(hit);
   if (dot(s.geometric_normal, to_eye) < 0) s.normal = -s.normal, s.geometric_normal = -s.geometric_normal;
@@ -158,11 +161,11 @@ Vertex PathTracer::State::first_vertex(const SceneHit& hit, const Ray& ray, Vec2
   result.albedo = albedo(v.bsdf);
   result.normal = v.geometric_normal;
   if (v.hair()) {
-    const StrandPlace place = rays.strand_place(hit);
+    const StrandLabel label = rays.strand_label(hit);
     result.hair = true;
-    result.tangent = place.tangent;
-    result.normal = normalize(to_eye - place.tangent * dot(to_eye, place.tangent));
-    result.groom = hit.object, result.strand = place.strand, result.u = place.u, result.width = 2 * place.radius;
+    result.tangent = v.tangent;
+    result.normal = normalize(to_eye - v.tangent * dot(to_eye, v.tangent));
+    result.groom = hit.object, result.strand = label.strand, result.u = label.u, result.width = 2 * v.radius;
   }
   const Vec3 before = transform_point(previous_view.world_to_camera, met);
   if (settings.previous_camera && before.z > 0) result.motion = project(previous_view, before) - at;
@@ -182,7 +185,7 @@ void PathTracer::State::gather(const Vertex& vertex, const LightRay& light, Vec3
   if (light.pdf > 0 && settings.technique == Technique::kMis)
     radiance *= power_heuristic(light.pdf, pdf(vertex.bsdf, light.to_light));
   if (!(largest(radiance) > 0) || !visible(vertex, light)) return;
-  if (tally.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, light.to_light);
+  if (tally.result.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, light.to_light);
   tally.add(radiance, depth);
 }
 
@@ -230,7 +233,7 @@ void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& rand
     const ScatteredRay scattered = scatter_ray(vertex, u, depth);
     throughput = throughput * scattered.weight;
     if (!(largest(throughput) > 0)) return;
-    if (tally.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
+    if (tally.result.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
     if (roulette) {
       const float survival = std::min(std::sqrt(largest(throughput)), 1.f);
       if (!(v[3] < survival)) return;
@@ -258,21 +261,19 @@ void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& rand
 /// Light that leaves a strand toward the eye by dual scattering: one ray to every light counts the strands on its way.
 void PathTracer::State::gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random,
                                     Tally& tally) const {
-  const DualPlace place =
-      dual->place(hit.object, color_of(hit.object, rays.strand_place(hit)), vertex.tangent, normalize(-ray.direction));
+  const DualPlace place = dual->place(hit.object, color_of(hit), vertex.tangent, normalize(-ray.direction));
   const auto gather_one = [&](const LightRay& light) {
     if (!(largest(light.arriving) > 0)) return;
     CrossedStrands crossed;
     const Ray way = vertex.ray(light.to_light, light.distance);
     if (settings.shadows && light.casts_shadow && way.near < way.far) {
       const auto cross = [&](const SceneHit& on_way) {
-        const StrandPlace p = rays.strand_place(on_way);
-        dual->cross(crossed, on_way.object, color_of(on_way.object, p), p.tangent, light.to_light);
+        dual->cross(crossed, on_way.object, color_of(on_way), rays.strand_place(on_way).tangent, light.to_light);
       };
       if (!rays.cross_strands(way, cross)) return;
     }
     const Vec3 radiance = light.arriving * DualLight::evaluate(place, light.to_light, crossed);
-    if (tally.split) tally.shares = lobe_shares(vertex.bsdf, light.to_light);
+    if (tally.result.split) tally.shares = lobe_shares(vertex.bsdf, light.to_light);
     tally.add(radiance, crossed.count);
   };
   for (std::size_t i = 0; i < lights.lights().size(); ++i) gather_one(lights.toward(i, vertex.position));
@@ -294,9 +295,10 @@ PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {
   const Vec2 in_pixel = settings.positions.empty() ? Vec2(u[0], u[1]) : settings.positions[index % settings.positions.size()];
   const Vec2 at = Vec2(static_cast<float>(x), static_cast<float>(y)) + in_pixel;
   const Ray ray = camera_ray(view, at.x, at.y);
-  const SceneHit hit = rays.intersect(ray);
+  const SceneHit hit = silhouette.covers(x, y) ? rays.intersect(ray) : SceneHit();
   PathSample result;
-  Tally tally{result, settings.split};
+  if (settings.split) result.split.emplace();
+  Tally tally{result};
   if (hit.kind == SceneHit::Kind::kNone) {
     if (!environment_visible) return result;
     result.alpha = 1;

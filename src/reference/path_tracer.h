@@ -31,13 +31,19 @@ struct PathSettings {
   std::vector<Vec2> positions;            ///< in the pixel, from its top left corner, 0…1: sample i stands at
                                           ///< positions[i % size]; empty: anywhere in the pixel
   std::optional<Camera> previous_camera;  ///< of the frame before, for PathSample::motion; none: it stood still
-  bool split = false;                     ///< fill PathSample::bounces and ::lobes
+  bool split = false;                     ///< fill PathSample::split
+};
+
+/// Radiance taken apart; both sums are PathSample::radiance.
+struct PathSplit {
+  static constexpr std::size_t kBounces = 16, kLobes = 5;
+  std::array<Vec3, kBounces> bounces{};  ///< by the scattering events between source and first hit; the last takes the rest
+  std::array<Vec3, kLobes> lobes{};      ///< by what the first hit did to it: R, TT, TRT, rest, surface
 };
 
 /// What a ray through a pixel brought back, and the place that it met first.
 struct PathSample {
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  static constexpr std::size_t kBounces = 16, kLobes = 5;
 
   Vec3 radiance;           ///< scene-linear, W/(m²·sr); 0 where alpha is 0
   float alpha = 0;         ///< 1 where a strand, a mesh or a visible environment is hit, else 0
@@ -51,9 +57,7 @@ struct PathSample {
   float width = 0;                              ///< diameter, metres
   Vec3 albedo;                                  ///< share of light that the first hit scatters, all directions together
   Vec2 motion;                                  ///< pixels from this sample to where its place was a frame before
-  std::array<Vec3, kBounces> bounces{};         ///< radiance by the scattering events between its source and the first hit; the
-                                                ///< last takes the rest. Sums to `radiance`; only where asked for
-  std::array<Vec3, kLobes> lobes{};             ///< by what the first hit did to it: R, TT, TRT, rest, surface
+  std::optional<PathSplit> split;               ///< where asked for
 };
 
 /// A scene made ready for rays: strands as curves of their basis, meshes as triangles, lights with their densities.

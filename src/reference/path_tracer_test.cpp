@@ -146,7 +146,7 @@ TEST(PathTracer, BouncesAreIndependentOfTheirLimit) {
     double sum = 0;
     for (int y = 0; y < 24; ++y)
       for (int x = 0; x < 24; ++x)
-        for (std::uint32_t i = 0; i < 24; ++i) sum += static_cast<double>(tracer.sample(x, y, i).bounces[bounce].y);
+        for (std::uint32_t i = 0; i < 24; ++i) sum += static_cast<double>(tracer.sample(x, y, i).split->bounces[bounce].y);
     return sum;
   };
   EXPECT_EQ(mean_of_bounce(1, 0), mean_of_bounce(70, 0));
@@ -249,11 +249,11 @@ TEST(PathTracer, PartsSumToTheWhole) {
     for (int x = 0; x < 24; ++x) {
       const PathSample s = tracer.sample(x, y, 1);
       Vec3 bounces, lobes;
-      for (const Vec3 b : s.bounces) bounces += b;
-      for (const Vec3 l : s.lobes) lobes += l;
+      for (const Vec3 b : s.split->bounces) bounces += b;
+      for (const Vec3 l : s.split->lobes) lobes += l;
       EXPECT_NEAR(bounces.y, s.radiance.y, 1e-4f * s.radiance.y);
       EXPECT_NEAR(lobes.y, s.radiance.y, 1e-3f * s.radiance.y);
-      EXPECT_EQ(s.lobes[4].y > 0, s.alpha > 0 && !s.hair && s.radiance.y > 0);
+      EXPECT_EQ(s.split->lobes[4].y > 0, s.alpha > 0 && !s.hair && s.radiance.y > 0);
     }
 }
 

@@ -9,9 +9,11 @@
 #include <functional>
 #include <vector>
 
+#include "core/buffer.h"
 #include "core/ray.h"
 #include "core/world_mesh.h"
 #include "reference/path_tracer.h"
+#include "reference/silhouette.h"
 
 namespace pelage {
 
@@ -30,11 +32,15 @@ struct SceneHit {
 
 /// A place on a strand's axis, world space.
 struct StrandPlace {
-  std::uint32_t strand = 0, span = 0;
   Vec3 axis;         ///< metres
   Vec3 tangent;      ///< unit length, root to tip
   float radius = 0;  ///< metres
-  float u = 0;       ///< 0 at the root … 1 at the tip
+};
+
+/// Which strand that is, and where on it.
+struct StrandLabel {
+  std::uint32_t strand = 0, span = 0;
+  float u = 0;  ///< 0 at the root … 1 at the tip
 };
 
 /// Is told a strand on a ray.
@@ -58,7 +64,11 @@ class RayScene {
   /// Flat curves only: Embree looks for hits of tubes by halving them, and tells the same one many times.
   bool cross_strands(const Ray& ray, const StrandVisitor& visitor) const;
 
+  /// All strands and meshes.
+  void add_to(Silhouette& silhouette) const;
+
   StrandPlace strand_place(const SceneHit& hit) const;
+  StrandLabel strand_label(const SceneHit& hit) const;
   Surface surface(const SceneHit& hit) const;
 
   std::size_t span_total() const;
@@ -75,12 +85,12 @@ class RayScene {
   /// asks for those around it, wherever their strands are in the file.
   struct Curves {
     CurveBasis basis = CurveBasis::kLinear;
-    std::vector<Vec4> points;  ///< world position and radius
+    Buffer<Vec4> points;  ///< world position and radius
     std::vector<Span> spans;
-    std::vector<std::uint32_t> first_points;  ///< [spans] of their control points; apart, because rays ask for nothing else
-    std::vector<std::uint8_t> flags;          ///< [spans] linear: which neighbors there are
+    Buffer<std::uint32_t> first_points;  ///< [spans] of their control points; apart, because rays ask for nothing else
+    std::vector<std::uint8_t> flags;     ///< [spans] linear: which neighbors there are
 
-    void sort_by_place();
+    const Vec4* points_of(std::size_t span) const { return &points[first_points[span]]; }
   };
   static Curves make_curves(const GroomInstance& groom);
   void attach_curves(const Curves& curves);

@@ -43,12 +43,14 @@ TEST(RayScene, PlacesAreThoseOfTheSegmentLookUp) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
     for (std::uint32_t primitive = 0; primitive < 6 * spans; ++primitive)
       for (const float t : {0.f, 0.3f, 0.9f}) {
-        const StrandPlace place = rays.strand_place({SceneHit::Kind::kStrand, 1, 0, primitive, t, 0});
-        const StrandSurface expected = surface_at(scene, numbering, {0, place.strand, place.span, 0}, t);
-        seen.insert({place.strand, place.span});
+        const SceneHit hit{SceneHit::Kind::kStrand, 1, 0, primitive, t, 0};
+        const StrandPlace place = rays.strand_place(hit);
+        const StrandLabel label = rays.strand_label(hit);
+        const StrandSurface expected = surface_at(scene, numbering, {0, label.strand, label.span, 0}, t);
+        seen.insert({label.strand, label.span});
         EXPECT_LT(length(place.axis - expected.position), 2e-6f);
         EXPECT_LT(length(place.tangent - expected.tangent), 2e-5f);
-        EXPECT_NEAR(place.u, expected.u, 1e-6f);
+        EXPECT_NEAR(label.u, expected.u, 1e-6f);
         EXPECT_NEAR(2 * place.radius, expected.width, 1e-6f);
       }
     EXPECT_EQ(seen.size(), 6 * spans) << "every span of every strand is there";
@@ -67,7 +69,8 @@ TEST(RayScene, RaysMeetTheCurves) {
       for (std::uint32_t i = 0; i < 2000; ++i) {
         Rng rng(11, i);
         const std::uint32_t span = static_cast<std::uint32_t>(rng.uniform() * static_cast<float>(rays.span_total()));
-        const StrandPlace aim = rays.strand_place({SceneHit::Kind::kStrand, 1, 0, span, rng.uniform(), 0});
+        const SceneHit aimed{SceneHit::Kind::kStrand, 1, 0, span, rng.uniform(), 0};
+        const StrandPlace aim = rays.strand_place(aimed);
         const Vec3 direction = normalize(Vec3(rng.normal(), rng.normal(), rng.normal()));
         const float along = dot(direction, aim.tangent);
         if (std::fabs(along) > 0.9f) continue;
@@ -78,7 +81,7 @@ TEST(RayScene, RaysMeetTheCurves) {
         const StrandPlace place = rays.strand_place(hit);
         const Vec3 at = aim.axis + side * offset + direction * (hit.distance - 5);
         EXPECT_LT(length(at - place.axis), 1.2f * place.radius);
-        met += place.strand == aim.strand;
+        met += rays.strand_label(hit).strand == rays.strand_label(aimed).strand;
       }
       EXPECT_GT(met, 1000);
     }
