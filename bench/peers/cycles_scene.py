@@ -1,8 +1,9 @@
 """The scene of cycles.py inside Blender: blender -b --python cycles_scene.py -- GROOM.hair SCENE.json SAMPLES BOUNCES THREADS SEED OUT.exr [PICTURE...]
 
 Reads the very groom file and the camera, size, material and environment of the very scene file that `pelage trace` gets. Prints
-`seconds SECONDS` of the call that renders, and `mean RADIANCE FILE` of its picture and of each further one. Blender 3.4 makes hair objects from Python only by way of geometry nodes: the
-strands stand in a curve object, which a node group hands over to a hair object with their radii.
+`seconds SECONDS` of the call that renders, and `mean RADIANCE FILE` of its picture and of each further one. A name OUT.gbuffer.exr gets
+the channels that `pelage denoise` reads. Blender 3.4 makes hair objects from Python only by way of geometry nodes: the strands
+stand in a curve object, which a node group hands over to a hair object with their radii.
 """
 import json
 import math
@@ -97,6 +98,22 @@ def hair_material(fiber):
     return material
 
 
+def add_gbuffer(scene, material):
+    """Passes, and outputs of the material, that `pelage denoise` reads (docs/denoise.md)."""
+    layer = scene.view_layers[0]
+    layer.use_pass_position = layer.use_pass_z = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    hair, geometry = nodes.new("ShaderNodeHairInfo"), nodes.new("ShaderNodeNewGeometry")
+    for name, kind, value in (("strand", "VALUE", hair.outputs["Random"]), ("u", "VALUE", hair.outputs["Intercept"]),
+                              ("tangent", "COLOR", geometry.outputs["Tangent"])):
+        aov = layer.aovs.add()
+        aov.name, aov.type = name, kind
+        output = nodes.new("ShaderNodeOutputAOV")
+        output.name = name
+        links.new(value, output.inputs["Value" if kind == "VALUE" else "Color"])
+    scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+
+
 def print_mean(path):
     image = bpy.data.images.load(path)
     pixels = numpy.empty(len(image.pixels), "f4")
@@ -151,11 +168,14 @@ def main():
     cycles.transparent_max_bounces = int(bounces)
     cycles.blur_glossy = cycles.sample_clamp_indirect = 0  # the same fiber and all light at every bounce
     scene.cycles_curves.shape = "RIBBONS"
+    is_gbuffer = out.endswith(".gbuffer.exr")
+    if is_gbuffer:
+        add_gbuffer(scene, hair.data.materials[0])
 
     start = time.perf_counter()
     bpy.ops.render.render(write_still=True)
     print("seconds", time.perf_counter() - start)
-    for picture in (out, *pictures):
+    for picture in (*([] if is_gbuffer else [out]), *pictures):
         print_mean(picture)
 
 

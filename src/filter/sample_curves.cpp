@@ -96,25 +96,28 @@ struct SampleCurves::Maker {
           "render one sample a pixel without a filter over pixels, lens or shutter; or give `screen` instead of `tangent`");
   }
 
+  /// From sample i to the one after it, where that is close on the same strand; else 0.
+  Vec3 chord_from(std::size_t i) const {
+    if (i + 1 >= pixels.size() || samples.strand_key(pixels[i]) != samples.strand_key(pixels[i + 1])) return {};
+    const Vec2 gap = screen_of(pixels[i + 1]) - screen_of(pixels[i]);
+    if (dot(gap, gap) > kClose * kClose || samples.u[pixels[i]] == samples.u[pixels[i + 1]]) return {};
+    return samples.position[pixels[i + 1]] - samples.position[pixels[i]];
+  }
+
   /// Where chords of close samples agree that tangents point one way, they do; else each follows its own chord.
   void turn_tangents() {
     direction.assign(pixels.size(), 1);
-    std::vector<float> along(pixels.size());  // cosine between a sample's tangent and the chord to the next one; 0: not close
-    std::size_t close = 0, toward_tip = 0;
-    for (std::size_t i = 0; i + 1 < pixels.size(); ++i) {
-      if (samples.strand_key(pixels[i]) != samples.strand_key(pixels[i + 1])) continue;
-      const Vec2 gap = screen_of(pixels[i + 1]) - screen_of(pixels[i]);
-      if (dot(gap, gap) > kClose * kClose || samples.u[pixels[i]] == samples.u[pixels[i + 1]]) continue;
-      along[i] = dot(samples.tangent[pixels[i]], samples.position[pixels[i + 1]] - samples.position[pixels[i]]);
-      ++close, toward_tip += along[i] > 0;
-    }
-    const float share = close > 0 ? static_cast<float>(toward_tip) / static_cast<float>(close) : 1;
-    if (share >= kAgreed) return;
-    if (share <= 1 - kAgreed) return direction.assign(pixels.size(), -1);
+    std::size_t chords = 0, toward_root = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const float chord = along[i] != 0 || i == 0 ? along[i] : along[i - 1];
-      if (chord < 0) direction[i] = -1;
+      Vec3 chord = chord_from(i);
+      if (chord == Vec3() && i > 0) chord = chord_from(i - 1);
+      const float along = dot(samples.tangent[pixels[i]], chord);
+      if (along < 0) direction[i] = -1, ++toward_root;
+      chords += along != 0;
     }
+    const float share = static_cast<float>(toward_root) / static_cast<float>(std::max<std::size_t>(1, chords));
+    if (share <= 1 - kAgreed) direction.assign(pixels.size(), 1);
+    if (share >= kAgreed) direction.assign(pixels.size(), -1);
   }
 
   Vec3 tangent_of(std::size_t i) const { return normalize(samples.tangent[pixels[i]] * direction[i]); }
