@@ -62,6 +62,10 @@ PixelMask PixelMask::intersected(const PixelMask& other) const {
   return combined(other, [](std::uint64_t a, std::uint64_t b) { return a & b; });
 }
 
+PixelMask PixelMask::united(const PixelMask& other) const {
+  return combined(other, [](std::uint64_t a, std::uint64_t b) { return a | b; });
+}
+
 PixelBox PixelMask::box() const {
   PixelBox box{width_, 0, height_, 0};
   for (int y = 0; y < height_; ++y)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -40,15 +41,21 @@ class PixelMask {
   /// Pixel p = y·width + x.
   void add(std::size_t p) { add(column(p), row(p)); }
   void remove(std::size_t p) { remove(column(p), row(p)); }
+  /// The same while other threads add pixels, too.
+  void add_shared(std::size_t p) {
+    const int x = column(p);
+    std::atomic_ref(words_[index(x, row(p))]).fetch_or(bit(x), std::memory_order_relaxed);
+  }
 
   /// Bit i of the result: whether (x + i, y) is in the set, for i < count ≤ 64; those outside the picture are not.
   std::uint64_t bits(int x, int y, int count) const;
 
   /// The pixels within `reach` ≥ 0 pixels in x and in y of one that is in the set.
   PixelMask grown(int reach) const;
-  /// Those of this set that are not in `other`, or that are; both of the same size.
+  /// Those of this set that are not in `other`, that are, and those of both; all of the same size.
   PixelMask without(const PixelMask& other) const;
   PixelMask intersected(const PixelMask& other) const;
+  PixelMask united(const PixelMask& other) const;
   PixelBox box() const;
   std::size_t count() const;
 

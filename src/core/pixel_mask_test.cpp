@@ -74,6 +74,7 @@ TEST(PixelMask, CombinesAsSetsDo) {
   for (int y = 0; y < 7; ++y)
     for (int x = 0; x < 100; ++x) {
       EXPECT_EQ(a.without(b).contains(x, y), a.contains(x, y) && !b.contains(x, y));
+      EXPECT_EQ(a.united(b).contains(x, y), a.contains(x, y) || b.contains(x, y));
       EXPECT_EQ(a.intersected(b).contains(x, y), a.contains(x, y) && b.contains(x, y));
     }
 }

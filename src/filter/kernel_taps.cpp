@@ -47,13 +47,6 @@ Pairs pairs_along(Vec2 tangent, const kernel::FilterKernel& k, int reach, std::s
 
 }  // namespace
 
-int DirectionCells::cell_of(Vec2 t) {
-  // Turned into the half plane y ≥ 0: from (1, 0) over (0, 1) to (−1, 0).
-  if (t.y < 0 || (t.y == 0 && t.x < 0)) t = t * -1.f;
-  const float share = t.x / (std::fabs(t.x) + t.y);  // 1 … −1
-  return static_cast<int>((1 - share) * kQuadrant + 0.5f) % kDirections;
-}
-
 Vec2 DirectionCells::middle(int cell) {
   const float share = 1 - static_cast<float>(cell) / kQuadrant;
   const Vec2 t(share, 1 - std::fabs(share));

@@ -3,6 +3,7 @@
 
 #include <pelage/vec.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,7 +19,12 @@ namespace pelage {
 struct DirectionCells {
   static constexpr int kDirections = 256;
   /// The cell of a vector other than 0.
-  static int cell_of(Vec2 t);
+  static int cell_of(Vec2 t) {
+    // Turned into the half plane y ≥ 0: from (1, 0) over (0, 1) to (−1, 0).
+    const float x = t.y < 0 ? -t.x : t.x, y = std::fabs(t.y);
+    const float share = x / (std::fabs(x) + y);  // 1 … −1
+    return static_cast<int>((1 - share) * (kDirections / 2) + 0.5f) % kDirections;
+  }
   /// The unit vector in the middle of a cell.
   static Vec2 middle(int cell);
 };

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kRowsPerTask = PixelMask::kRowsPerTask;
 constexpr float kLongestStep = 1.5f;    // pixels
+constexpr std::size_t kPrefetch = 8;    // walks ahead
 constexpr float kShortestStep = 1e-4f;  // of a span: gives up halving where a strand jumps
 
 /// Neighbor n = 0…8 of a pixel is at (n mod 3 − 1, n div 3 − 1); 4 is the pixel itself.
@@ -105,6 +106,7 @@ class Walker {
   Walker(const StrandLayer& layer, const PixelMask& hair, const StrandCurves& curves)
       : layer_(layer), hair_(hair), curves_(curves), grid_{layer.width, layer.height} {}
 
+  void prefetch(std::size_t source) const { curves_.prefetch(layer_.visibility[source].primitive()); }
   StrandCurve curve_of(std::size_t source) const { return curves_.curve_of(layer_.visibility[source].primitive()); }
 
   /// From the sample of pixel `source` along its strand, `curve`, toward the tip (sign 1) or the root (−1): adds the empty pixels
@@ -167,20 +169,38 @@ Choices choose_all(const StrandLayer& layer, const PixelMask& hair, const LinkSe
   return all;
 }
 
-/// The least loss of the empty pixels that chose (x, y), by whether they lie toward the strand's root or its tip; or kNoWalk.
-void losses_of_source(const StrandLayer& layer, const Choices& all, int x, int y, std::uint16_t (&loss)[2]) {
+/// A sample that walks begin at: the least loss of the empty pixels that chose it, by whether they lie toward the strand's root
+/// or its tip; kNoWalk for none.
+struct Source {
+  std::size_t pixel;
+  std::uint16_t loss[2] = {kNoWalk, kNoWalk};
+};
+
+Source make_source(const StrandLayer& layer, const Choices& all, int x, int y) {
   const Grid grid{layer.width, layer.height};
-  const Vec2 tangent = layer.visibility[grid.index(x, y)].tangent();
-  loss[0] = loss[1] = kNoWalk;
+  Source source{grid.index(x, y)};
+  const Vec2 tangent = layer.visibility[source.pixel].tangent();
   for (int n = 0; n < 9; ++n) {
     const int ex = x + neighbor_x(n), ey = y + neighbor_y(n);
     if (!all.made.contains(ex, ey)) continue;
     const Choice& choice = all.choices[grid.index(ex, ey)];
     if (choice.neighbor != 8 - n) continue;  // the empty pixel sees its source on the other side
     const Vec2 offset(static_cast<float>(neighbor_x(n)), static_cast<float>(neighbor_y(n)));
-    std::uint16_t& least = loss[dot(offset, tangent) > 0];
+    std::uint16_t& least = source.loss[dot(offset, tangent) > 0];
     least = std::min<std::uint16_t>(least, choice.loss);
   }
+  return source;
+}
+
+/// Those in rows first ≤ y < last, of the pixels in `with_choices`.
+std::vector<Source> sources_of(const StrandLayer& layer, const Choices& all, const PixelMask& with_choices, std::size_t first,
+                               std::size_t last) {
+  std::vector<Source> sources;
+  with_choices.for_each(first, last, [&](int x, int y) {
+    const Source source = make_source(layer, all, x, y);
+    if (source.loss[0] != kNoWalk || source.loss[1] != kNoWalk) sources.push_back(source);
+  });
+  return sources;
 }
 
 void atomic_least(std::uint64_t& value, std::uint64_t other) {
@@ -200,7 +220,6 @@ PixelBox screen_box(const StrandLayer& layer) {
 
 Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSettings& settings) {
   Links links;
-  const Grid grid{layer.width, layer.height};
   const PixelMask& hair = layer.hair;
   PELAGE_CHECK(hair.width() == layer.width && hair.height() == layer.height);
   const Choices all = choose_all(layer, hair, settings);
@@ -213,23 +232,23 @@ Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSet
   parallel_for(best.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     std::fill(best.begin() + begin, best.begin() + end, ~std::uint64_t{0});
   });
-  const PixelMask sources = all.made.grown(1).intersected(hair);
+  const PixelMask with_choices = all.made.grown(1).intersected(hair);
   const Walker walker(layer, hair, curves);
   std::atomic<std::size_t> walks{0};
   parallel_for(rows, kRowsPerTask, [&](std::size_t first, std::size_t last) {
     std::vector<Step>& mine = steps[first / kRowsPerTask];
+    const std::vector<Source> sources = sources_of(layer, all, with_choices, first, last);
     std::size_t count = 0;
-    sources.for_each(first, last, [&](int x, int y) {
-      std::uint16_t loss[2];
-      losses_of_source(layer, all, x, y, loss);
-      if (loss[0] == kNoWalk && loss[1] == kNoWalk) return;
-      const std::size_t source = grid.index(x, y);
-      StrandCurve curve = walker.curve_of(source);
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (i + kPrefetch < sources.size()) walker.prefetch(sources[i + kPrefetch].pixel);
+      const Source& source = sources[i];
+      StrandCurve curve = walker.curve_of(source.pixel);
       for (int tipward = 0; tipward < 2; ++tipward)
-        if (loss[tipward] != kNoWalk) walker.walk(source, curve, loss[tipward], tipward ? 1.f : -1.f, mine), ++count;
-    });
-    for (const Step& step : mine) atomic_least(best[step.pixel], step.order);
+        if (source.loss[tipward] != kNoWalk)
+          walker.walk(source.pixel, curve, source.loss[tipward], tipward ? 1.f : -1.f, mine), ++count;
+    }
     walks += count;
+    for (const Step& step : mine) atomic_least(best[step.pixel], step.order);
   });
   links.walks = walks;
 
@@ -242,11 +261,11 @@ Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSet
       layer.visibility[step.pixel] = step.sample;
       layer.depth[step.pixel] = step.depth;
       layer.color[step.pixel] = layer.color[source];
+      layer.hair.add_shared(step.pixel);
       fills[task].push_back({step.pixel, source});
     }
   });
   for (const auto& part : fills) links.fills.insert(links.fills.end(), part.begin(), part.end());
-  for (const Fill& fill : links.fills) layer.hair.add(fill.pixel);
   return links;
 }
 

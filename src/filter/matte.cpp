@@ -105,7 +105,7 @@ void extend_tangents(Matte& m, const StrandLayer& layer, int reach) {
     m.lie(x, y, tangent);
     gaps.add(x, y);
   });
-  gaps.for_each(0, static_cast<std::size_t>(m.height), [&](int x, int y) { m.hair.add(x, y); });
+  m.hair = m.hair.united(gaps);
 }
 
 Image lay_over(const Matte& m, const Buffer<Vec4>& filtered, const StrandLayer& layer, const Behind& behind, float exposure) {

@@ -29,12 +29,9 @@ SegmentCounts::SegmentCounts(std::size_t slots) : slots_(slots) {
   clear();
 }
 
-std::size_t SegmentCounts::used() const {
-  return static_cast<std::size_t>(std::count_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.key != kFree; }));
-}
-
 void SegmentCounts::clear() {
   filter_.fill(0);
+  used_ = 0;
   parallel_for(slots_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     std::fill(slots_.begin() + begin, slots_.begin() + end,
               Slot{.key = kFree, .hit = 0, .filled = 0, .red = 0, .green = 0, .blue = 0});
@@ -47,6 +44,7 @@ bool SegmentCounts::insert(std::uint32_t key) {
     const std::atomic_ref<std::uint32_t> slot(slots_[i].key);
     std::uint32_t found = slot.load(std::memory_order_relaxed);
     const bool taken = found == kFree && slot.compare_exchange_strong(found, key, std::memory_order_relaxed);
+    if (taken) used_.fetch_add(1, std::memory_order_relaxed);
     if (taken || found == key) {
       std::atomic_ref(filter_[filter_word(key, kFilterWords)]).fetch_or(filter_bit(key), std::memory_order_relaxed);
       return true;

@@ -39,7 +39,8 @@ class SegmentCounts {
   const Slot& operator[](std::uint32_t slot) const { return slots_[slot]; }
   /// Takes all keys out.
   void clear();
-  std::size_t used() const;
+  /// Keys that are in it.
+  std::size_t used() const { return used_; }
 
   static void add_hit(Slot& slot, Vec3 color);
   static void add_filled(Slot& slot, std::uint32_t pixels) {
@@ -54,6 +55,7 @@ class SegmentCounts {
   static constexpr std::size_t kFilterWords = 1 << 14;
   Buffer<std::uint64_t> filter_{kFilterWords};
   Buffer<Slot> slots_;
+  std::atomic<std::size_t> used_{0};
 };
 
 }  // namespace pelage

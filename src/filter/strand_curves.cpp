@@ -1,5 +1,7 @@
 #include "filter/strand_curves.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 
 #include "frame/camera_view.h"
@@ -17,6 +19,14 @@ StrandCurve GroomCurves::curve_of(std::uint32_t primitive) const {
   const StrandSet& set = *scene_->grooms[ref.groom].strands;
   const std::uint32_t spans = span_count(set.basis, set.offsets[ref.strand + 1] - set.offsets[ref.strand]);
   return {primitive - ref.span, ref.groom, ref.strand, static_cast<float>(spans)};
+}
+
+void GroomCurves::prefetch(std::uint32_t primitive) const {
+  std::size_t groom = 0;
+  while (spans_.groom_base[groom + 1] <= primitive) ++groom;
+  const StrandSet& set = *scene_->grooms[groom].strands;
+  // A primitive's number is that of its first point, but for Bézier spans, which take three.
+  if (set.basis != CurveBasis::kBezier) hwy::Prefetch(&set.points[primitive - spans_.groom_base[groom]]);
 }
 
 void GroomCurves::load(StrandCurve& curve, std::uint32_t span) const {

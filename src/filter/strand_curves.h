@@ -36,6 +36,8 @@ class StrandCurves {
   virtual ~StrandCurves() = default;
   /// The strand of a primitive.
   virtual StrandCurve curve_of(std::uint32_t primitive) const = 0;
+  /// Says that curve_of() and at() will soon be asked for this primitive.
+  virtual void prefetch(std::uint32_t /*primitive*/) const {}
   /// False where nothing is to be seen: behind the near plane. s ∈ [0, curve.end].
   virtual bool at(StrandCurve& curve, float s, CurvePoint& point) const = 0;
   /// Parameter by which the strand moves on while it covers `pixels` at `depth`, would it lie across the view: Δu₀ of Huang
@@ -55,6 +57,7 @@ class GroomCurves final : public StrandCurves {
  public:
   GroomCurves(const Scene& scene, const CameraView& view);
   StrandCurve curve_of(std::uint32_t primitive) const override;
+  void prefetch(std::uint32_t primitive) const override;
   bool at(StrandCurve& curve, float s, CurvePoint& point) const override;
   float step(StrandCurve& curve, float s, float depth, float pixels) const override;
 
