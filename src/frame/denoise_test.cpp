@@ -284,6 +284,43 @@ TEST(Denoise, NamesThePixelThatIsWrong) {
   EXPECT_EQ(error_of(gbuffer), "no error");
 }
 
+// Files say anything: numbers of every size end in a picture or in an Error.
+TEST(Denoise, SurvivesAnyNumbers) {
+  const std::vector<std::string> world{"R",         "G",          "B",          "A",          "Z",
+                                       "groom",     "strand",     "u",          "tangent.X",  "tangent.Y",
+                                       "tangent.Z", "position.X", "position.Y", "position.Z", "coverage"};
+  const std::vector<std::string> screen{"R", "G", "B", "Z", "strand", "u", "screen.X", "screen.Y"};
+  const Scene scene = thin_scene(16, 12);
+  int pictures = 0;
+  for (std::uint32_t seed = 0; seed < 400; ++seed) {
+    Rng rng(seed, 11);
+    Image gbuffer(16, 12, seed % 2 ? world : screen);
+    const float odd[] = {0, 1, -1, 0.5f, 1e-40f, 1e-30f, 1e8f, 1e30f, -1e30f, 3e38f, INFINITY, kNan};
+    const std::size_t most = seed % 5 < 2 ? 4 : seed % 5 == 4 ? 12 : 10, n = gbuffer.channel_count();
+    for (float& v : gbuffer.pixels)
+      v = rng.uniform() < 0.02f * static_cast<float>(seed % 7)
+              ? odd[static_cast<std::size_t>(rng.uniform() * static_cast<float>(most))]
+              : rng.uniform();
+    const std::size_t strand = channel(gbuffer, "strand"), depth = channel(gbuffer, "Z");
+    for (std::size_t p = 0; p < gbuffer.pixels.size(); p += n) {
+      gbuffer.pixels[p + strand] = std::floor(6 * rng.uniform());
+      if (seed % 3) gbuffer.pixels[p + depth] = 0.5f + rng.uniform();
+      for (std::size_t c = 0; seed % 2 && seed % 4 == 1 && c < 3; ++c)  // a camera that looks along z
+        gbuffer.pixels[p + channel(gbuffer, "position.X") + c] = c == 0   ? static_cast<float>(p / n % 16)
+                                                                 : c == 1 ? static_cast<float>(p / n / 16)
+                                                                          : rng.uniform();
+    }
+    DenoiseSettings settings;
+    settings.samples = seed % 6 == 5 ? 4 : 1, settings.reach = seed % 8 ? 16.f : 1e30f,
+    settings.piece = seed % 9 ? 10.f : 1e-30f;
+    settings.link.kernel_size = seed % 10 ? 0.f : 1.f;
+    if (seed % 2) settings.link.alpha = seed % 12 == 1 ? LinkAlpha::kCoverage : LinkAlpha::kCount;
+    if (seed % 16 == 3) settings.scene = &scene;
+    pictures += error_of(gbuffer, settings) == "no error";
+  }
+  EXPECT_GT(pictures, 40);
+}
+
 TEST(Denoise, RefusesSizesAndSettings) {
   Image gbuffer = render_gbuffer(thin_scene(47, 32));
   DenoiseSettings settings = settings_for_thin_scenes();
