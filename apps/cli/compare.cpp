@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +13,7 @@
 #include "core/nearest.h"
 #include "frame_files.h"
 #include "picture_file.h"
+#include "render.h"
 #include "terminal.h"
 #include "verbs.h"
 
@@ -22,6 +24,8 @@ using Json = nlohmann::ordered_json;
 
 struct CompareVerb {
   std::string test, reference, mask, tiles, tone_map;
+  RenderOptions strands;  // its input is --strands
+  std::vector<float> background;
   std::vector<std::string> regions, metrics, maps;
   std::vector<float> exposures;
   float pixels_per_degree = CompareOptions{}.pixels_per_degree, map_scale = 0;
@@ -153,11 +157,18 @@ Json to_json(const CompareVerb& o, const SequenceComparison& s) {
 
 std::string number(const MetricValue& v) { return v.value ? fmt::format("{:.6g}", *v.value) : "-"; }
 
+const std::map<std::string, const char*> kContinuity = {
+    {"continuity", "share of the length of flyaway strands in runs of 8 pixels or more without a gap"},
+    {"continuity_shown", "share of that length that is shown at all"},
+    {"continuity_gap", "mean length of a gap, pixels"},
+    {"continuity_length", "length of flyaway strands that the reference shows, pixels"}};
+
 void print_values(const std::vector<MetricValue>& values) {
   for (const MetricValue& v : values) {
     std::string text = v.note;
     for (const Metric& metric : registered_metrics())
       if (metric.key == v.key && text.empty()) text = metric.description;
+    if (const auto found = kContinuity.find(v.key); found != kContinuity.end() && text.empty()) text = found->second;
     fmt::print("  {:<24} {:>12}{}{}\n", v.key, number(v), text.empty() ? "" : "  ", text);
   }
 }
@@ -192,21 +203,65 @@ void write_map(const MapFile& file, const ErrorMap& map, float scale) {
   write_image(file.path, color_error(map, scale > 0 ? scale : color_scale(map)));
 }
 
+Picture read_input(const CompareVerb& o, const std::string& path) {
+  const Picture picture = read_picture(path);
+  return o.background.empty() ? picture : over_background(picture, {o.background[0], o.background[1], o.background[2]});
+}
+
+/// The scene of --strands, seen at the size of the pictures.
+Scene strand_scene(const CompareVerb& o, const Image& picture, const Progress& progress) {
+  RenderOptions options = o.strands;
+  options.size = fmt::format("{}x{}", picture.width, picture.height);
+  std::vector<std::string> notes;
+  Scene scene = make_scene(options, progress, notes);
+  scene.settings.width = picture.width, scene.settings.height = picture.height;
+  return scene;
+}
+
+/// Where the hair of `scene` is, exactly, as a picture with channel `coverage`.
+Picture coverage_of(Scene scene, const Progress& progress) {
+  scene.settings.view = View::kCoverage, scene.settings.method = Method::kMsaa, scene.settings.samples = 1;
+  Picture picture{render(scene, progress).linear, Encoding::kLinear, "--strands"};
+  picture.image.channels = {"coverage", "-", "-", "A"};
+  return picture;
+}
+
+PixelMask mask_of(const CompareVerb& o, const Picture& source, std::string& note) {
+  if (o.mask == "hair") return hair_mask(source, &note);
+  if (o.mask == "flyaway") return flyaway_mask(source);
+  return o.mask.empty() ? PixelMask() : mask_from_image(read_picture(o.mask));
+}
+
+void add_continuity(const Continuity& c, Comparison& comparison) {
+  const std::string none = "no strand stands alone where the reference shows it";
+  comparison.details.push_back({"continuity", c.connected, c.connected ? "" : none});
+  comparison.details.push_back({"continuity_shown", c.shown, ""});
+  comparison.details.push_back({"continuity_gap", c.mean_gap, ""});
+  comparison.details.push_back({"continuity_length", c.length, ""});
+}
+
 void compare_pictures(const CompareVerb& o) {
   std::vector<MapFile> maps;
   for (const std::string& text : o.maps) maps.push_back(parse_map(text));
   for (const MapFile& map : maps) check_output(map.path);
-  const Picture test = read_picture(o.test), reference = read_picture(o.reference);
+  const Picture test = read_input(o, o.test), reference = read_input(o, o.reference);
   CompareOptions options = options_of(o, maps);
-  std::string note;
-  if (o.mask == "hair") options.mask = hair_mask(reference, &note);
-  else if (!o.mask.empty()) options.mask = mask_from_image(read_picture(o.mask));
   options.regions = regions_of(o, reference.image.width, reference.image.height);
+  std::string note;
   Comparison comparison;
   {
     ProgressLine line;
     options.progress = line.callback();
-    comparison = compare_images(test, reference, options);
+    if (o.strands.input.empty()) {
+      options.mask = mask_of(o, reference, note);
+      comparison = compare_images(test, reference, options);
+    } else {
+      const Scene scene = strand_scene(o, reference.image, options.progress);
+      options.mask = mask_of(o, coverage_of(scene, options.progress), note);
+      comparison = compare_images(test, reference, options);
+      const FlyawayPaths paths = flyaway_paths(scene, kFlyawayCoverage, ContinuityOptions{}.least_run, options.progress);
+      add_continuity(measure_continuity(test, reference, paths), comparison);
+    }
   }
   if (!note.empty()) comparison.warnings.push_back(note);
   for (std::size_t i = 0; i < maps.size(); ++i) write_map(maps[i], comparison.maps[i], o.map_scale);
@@ -222,6 +277,8 @@ void compare_frames(const CompareVerb& o, const FrameFiles& test, const FrameFil
   check_same_frames(o.test, test, o.reference, reference);
   if (!o.maps.empty() || !o.tiles.empty() || !o.regions.empty())
     throw UsageError("--map", "", "maps and regions are of single pictures", "compare one frame");
+  if (!o.strands.input.empty() || !o.background.empty() || o.mask == "flyaway")
+    throw UsageError("--strands", "", "strands, backgrounds and flyaway pixels are of single pictures", "compare one frame");
   CompareOptions options = options_of(o, {});
   if (!o.mask.empty() && o.mask != "hair") options.mask = mask_from_image(read_picture(o.mask));
   SequenceComparison sequence;
@@ -264,8 +321,19 @@ void add_compare(CLI::App& app) {
   auto o = std::make_shared<CompareVerb>();
   verb->add_option("TEST", o->test, "Picture (.png, .exr, .hdr), or frames: 'out.%04d.png', 'out.*.exr'")->type_name("FILE");
   verb->add_option("REFERENCE", o->reference, "What it should be")->type_name("FILE");
-  verb->add_option("--mask", o->mask, "Pixels that count: hair (of the reference), or a picture that is black elsewhere")
-      ->type_name("hair|FILE");
+  verb->add_option("--mask", o->mask,
+                   "Pixels that count: hair or flyaway (covered by less than 0.3) of the reference or --strands, or a "
+                   "picture that is black elsewhere")
+      ->type_name("hair|flyaway|FILE");
+  verb->add_option(
+          "--strands", o->strands.input,
+          "Groom or scene that the pictures show: also measures how much of its flyaway strands can be followed without "
+          "a gap. The camera's options are those of `pelage render`")
+      ->type_name("FILE");
+  verb->add_option("--background", o->background, "Lay transparent pictures over this linear color first")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("R,G,B");
   verb->add_option("--regions", o->tiles, "Also over tiles, e.g. 4x3")->type_name("NxM");
   verb->add_option("--region", o->regions, "Also over a rectangle; may be repeated")
       ->type_name("NAME=X,Y,WxH")
@@ -287,6 +355,7 @@ void add_compare(CLI::App& app) {
       ->type_name("A,B[,N]");
   verb->add_flag("--json", o->json, "Print JSON");
   verb->add_flag("--list", o->list, "Name the metrics and stop");
+  add_camera_options(*verb, o->strands);
   add_machine_options(*verb);
   verb->footer(
       "Two scene-linear pictures (EXR, HDR) are compared as they are, PNG files by their sRGB values. docs/metrics.md says "
@@ -294,6 +363,7 @@ void add_compare(CLI::App& app) {
       "Examples:\n"
       "  pelage compare test.png reference.png --map flip.png\n"
       "  pelage compare test.exr reference.exr --mask hair --regions 4x3 --json\n"
+      "  pelage compare link.exr truth.exr --strands groom.pelage --mask flyaway\n"
       "  pelage compare 'taa.%04d.png' 'truth.%04d.png' --metrics psnr,flip");
   verb->callback([o] {
     if (o->list) return list_metrics();

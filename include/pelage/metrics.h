@@ -29,6 +29,8 @@ struct Picture {
 };
 /// EXR, PNG, Radiance HDR with the values as they stand in the file. Throws Error.
 Picture read_picture(const std::string& path);
+/// `picture` over an opaque background of this linear color; one without alpha stays as it is. Throws Error where it has no colors.
+Picture over_background(Picture picture, Vec3 color);
 
 struct PixelRect {
   int x = 0, y = 0, width = 0, height = 0;  ///< pixels, row 0 on top
@@ -40,6 +42,9 @@ struct Region {
 /// `columns` × `rows` tiles that cover a picture, named "x,y" from the top left. Throws Error where a tile would be empty.
 std::vector<Region> tile_regions(int width, int height, int columns, int rows);
 
+/// Hair that covers less than this share of a pixel counts as flyaway.
+inline constexpr float kFlyawayCoverage = 0.3f;
+
 /// One byte per pixel, row 0 on top, 0 leaves the pixel out. Empty: every pixel counts.
 using PixelMask = std::vector<std::uint8_t>;
 
@@ -47,6 +52,9 @@ using PixelMask = std::vector<std::uint8_t>;
 /// where alpha is not 1 all over (which also counts meshes, and `note` says so). Throws Error with a remedy where no channel
 /// tells, or where none shows hair.
 PixelMask hair_mask(const Picture& picture, std::string* note = nullptr);
+/// The pixels of which hair covers something, but less than `most_coverage`, by channel `coverage`. Throws Error where there is
+/// no such channel or pixel.
+PixelMask flyaway_mask(const Picture& picture, float most_coverage = kFlyawayCoverage);
 /// The pixels of which any color channel (alpha aside) is above 0. Throws Error where there are none.
 PixelMask mask_from_image(const Picture& picture);
 
@@ -131,6 +139,38 @@ SequenceComparison compare_sequences(int frames, const std::function<Picture(int
 Image color_error(const ErrorMap& map, float scale);
 /// The scale under which color_error() shows `map` well: 1 for metrics that end at 1, else its 99th percentile.
 float color_scale(const ErrorMap& map);
+
+// Continuity of strands: whether hair that stands alone is seen as lines or as dashes. docs/metrics.md says how and why.
+
+/// Where a scene shows strands that stand alone: parts of strands, as places on the screen half a pixel apart.
+struct FlyawayPaths {
+  static constexpr float kStep = 0.5f;       ///< pixels from a place of a part to the next
+  int width = 0, height = 0;                 ///< of the picture
+  std::vector<Vec2> places = {};             ///< pixels, all within the picture
+  std::vector<std::uint32_t> offsets = {0};  ///< [part_count + 1] where parts begin in `places`
+  std::size_t part_count() const { return offsets.size() - 1; }
+};
+/// The parts of all strands of `scene`, in the size of its settings, that lie in pixels of which hair covers less than
+/// `most_coverage` (exact area), in front of the opaque scene, and that are at least `least_length` pixels long. Strands come in
+/// their order, from root to tip; the same for any number of threads. Throws Error as render() does. O(points + pixels).
+FlyawayPaths flyaway_paths(const Scene& scene, float most_coverage = kFlyawayCoverage, float least_length = 8,
+                           const Progress& progress = {});
+
+struct ContinuityOptions {
+  float share = 0.5f;            ///< of the reference's contrast across a strand, from which a place counts as shown; > 0
+  float least_run = 8;           ///< pixels without a gap, from which a run of shown places counts as connected
+  float least_contrast = 0.01f;  ///< linear; places where the reference has less contrast are not asked for
+};
+struct Continuity {
+  std::optional<double> connected;  ///< share of the length that is shown in runs of `least_run` or more; none: no length
+  std::optional<double> shown;      ///< share of the length that is shown at all
+  double mean_gap = 0;              ///< pixels; 0: no gaps
+  double length = 0;                ///< pixels of strand that the reference shows
+};
+/// How much of `paths` can be followed in `test` without a gap, by what `reference` shows of them. Alpha counts as a channel where
+/// both pictures have it. Throws Error where pictures and paths differ in size, or hold NaN or infinity. O(places).
+Continuity measure_continuity(const Picture& test, const Picture& reference, const FlyawayPaths& paths,
+                              const ContinuityOptions& options = {});
 
 // The registry of metrics. A metric with weights or data of its own is plugged in by register_metric(): docs/metrics.md.
 

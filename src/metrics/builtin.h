@@ -13,5 +13,6 @@ Metric ms_ssim_metric();
 Metric flip_metric();
 Metric coverage_metric();
 Metric coverage_bias_metric();
+Metric energy_metric();
 
 }  // namespace pelage::metrics

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/srgb.h"
 #include "metrics/test_pictures.h"
 
 namespace pelage::metrics {
@@ -282,6 +283,46 @@ TEST(ColorMap, ScaleIsOneOrThe99thPercentile) {
   EXPECT_EQ(color_scale(map), 1) << "nothing to show";
   for (int x = 0; x < 100; ++x) map.error.pixels[static_cast<std::size_t>(x)] = static_cast<float>(x);
   EXPECT_EQ(color_scale(map), 98);
+}
+
+TEST(Compare, EnergyIsTheShareOfTheReferencesLight) {
+  Picture reference = make_picture(8, 4, Encoding::kLinear), test = reference;
+  std::fill(reference.image.pixels.begin(), reference.image.pixels.end(), 0.5f);
+  std::fill(test.image.pixels.begin(), test.image.pixels.end(), 0.5f);
+  for (int x = 0; x < 8; ++x) test.image.at(x, 1)[1] = 2;
+  EXPECT_NEAR(compare_images(test, reference).value("energy").value(), (12 * 0.5 - 0.5 + 2) / (12 * 0.5), 1e-6);
+  CompareOptions options;
+  options.mask = PixelMask(32), options.mask[0] = 1;
+  EXPECT_EQ(compare_images(test, reference, options).value("energy"), 1);
+  std::fill(reference.image.pixels.begin(), reference.image.pixels.end(), 0.f);
+  EXPECT_EQ(compare_images(test, reference).value("energy"), std::nullopt) << "a black reference";
+}
+
+TEST(Compare, FlyawayPixelsAreThinlyCovered) {
+  Picture picture{Image(4, 1, {"R", "coverage"}), Encoding::kLinear, "picture"};
+  const float coverage[] = {0, 0.29f, 0.31f, 1};
+  for (int x = 0; x < 4; ++x) picture.image.at(x, 0)[1] = coverage[x];
+  EXPECT_EQ(flyaway_mask(picture), (PixelMask{0, 1, 0, 0}));
+  EXPECT_EQ(flyaway_mask(picture, 0.5f), (PixelMask{0, 1, 1, 0}));
+  EXPECT_THROW(flyaway_mask(picture, 0.1f), Error) << "no such pixel";
+  EXPECT_THROW(flyaway_mask({Image(4, 1, {"R"}), Encoding::kLinear, "picture"}), Error) << "no coverage";
+}
+
+TEST(Compare, BackgroundFillsWhatIsTransparent) {
+  Picture linear{Image(1, 1, {"R", "G", "B", "A"}), Encoding::kLinear, "picture"};
+  const float hair[] = {0.1f, 0.2f, 0.3f, 0.5f};
+  std::copy_n(hair, 4, linear.image.at(0, 0));
+  const Picture over = over_background(linear, {1, 0.5f, 0});
+  EXPECT_NEAR(over.image.pixels[0], 0.6f, 1e-6f);
+  EXPECT_NEAR(over.image.pixels[1], 0.45f, 1e-6f);
+  EXPECT_NEAR(over.image.pixels[2], 0.3f, 1e-6f);
+  EXPECT_EQ(over.image.pixels[3], 1);
+  Picture display{Image(1, 1, {"R", "G", "B", "A"}), Encoding::kDisplay, "picture"};
+  const float straight[] = {1, 0, 0, 0.5f};
+  std::copy_n(straight, 4, display.image.at(0, 0));
+  EXPECT_NEAR(over_background(display, {0, 1, 0}).image.pixels[1], linear_to_srgb(0.5f), 1e-6f);
+  const Picture opaque = make_picture(2, 2);
+  EXPECT_EQ(over_background(opaque, {1, 1, 1}).image.pixels, opaque.image.pixels);
 }
 
 }  // namespace

@@ -61,6 +61,20 @@ PixelMask hair_mask(const Picture& picture, std::string* note) {
   return hair_or_error(picture, std::move(mask), "A");
 }
 
+PixelMask flyaway_mask(const Picture& picture, float most_coverage) {
+  const Image& image = picture.image;
+  const auto c = channel(image, "coverage");
+  if (!c) throw Error(picture.name, "", "no channel `coverage` says where hair is thin", "render it with `--layers coverage`");
+  const std::size_t n = image.channel_count();
+  PixelMask mask(image.pixels.size() / n);
+  for (std::size_t p = 0; p < mask.size(); ++p) {
+    const float covered = image.pixels[p * n + *c];
+    mask[p] = covered > 0 && covered < most_coverage;
+  }
+  if (any(mask)) return mask;
+  throw Error(picture.name, "coverage", fmt::format("no pixel has hair that covers less than {} of it", most_coverage), "");
+}
+
 PixelMask mask_from_image(const Picture& picture) {
   std::vector<std::size_t> colors;
   for (std::size_t c = 0; c < picture.image.channel_count(); ++c)

@@ -23,6 +23,26 @@ Picture read_picture(const std::string& path) {
   return {read_image(path, false), png ? Encoding::kDisplay : Encoding::kLinear, path};
 }
 
+Picture over_background(Picture picture, Vec3 color) {
+  metrics::Colors colors = metrics::colors_of(picture);
+  if (colors.alpha.empty()) return picture;
+  const bool display = picture.encoding == Encoding::kDisplay;
+  const std::array<std::size_t, 4> place = {*metrics::channel(picture.image, "R"), *metrics::channel(picture.image, "G"),
+                                            *metrics::channel(picture.image, "B"), *metrics::channel(picture.image, "A")};
+  const float behind[] = {color.x, color.y, color.z};
+  const std::size_t n = picture.image.channel_count();
+  for (std::size_t p = 0; p < colors.alpha.size(); ++p) {
+    const float alpha = colors.alpha[p];
+    if (alpha == 1) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float x = colors.rgb.pixels[3 * p + c], rest = (1 - alpha) * behind[c];
+      picture.image.pixels[p * n + place[c]] = display ? linear_to_srgb(srgb_to_linear(x) * alpha + rest) : x + rest;
+    }
+    picture.image.pixels[p * n + place[3]] = 1;
+  }
+  return picture;
+}
+
 namespace metrics {
 namespace {
 

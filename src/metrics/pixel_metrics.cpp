@@ -54,6 +54,23 @@ Image coverage_field(const MetricInput& in, const Term& term) {
   return field;
 }
 
+/// Mean of the test over mean of the reference.
+MetricResult energy(const MetricInput& in) {
+  const auto mean = [](const Image& image, const PixelSet& set) {
+    return mean_over(set, {0, 0, image.width, image.height}, [&](int x, int y) {
+      const float* c = image.at(x, y);
+      return c[0] + c[1] + c[2];
+    });
+  };
+  MetricResult result;
+  result.value = [&test = in.test, &reference = in.reference, mean](const PixelSet& set) -> std::optional<double> {
+    const std::optional<double> t = mean(test, set), r = mean(reference, set);
+    if (!t || !r || !(*r > 0)) return std::nullopt;
+    return *t / *r;
+  };
+  return result;
+}
+
 }  // namespace
 
 Metric mse_metric() {
@@ -93,6 +110,15 @@ Metric coverage_bias_metric() {
           .has_map = false,
           .unavailable = no_coverage,
           .evaluate = [](const MetricInput& in) { return MetricResult{coverage_field(in, [](float d) { return d; })}; }};
+}
+
+Metric energy_metric() {
+  return {.key = "energy",
+          .description = "mean of the test over mean of the reference, scene-linear; 1: the same light",
+          .domain = Encoding::kLinear,
+          .has_map = false,
+          .no_value = "the reference is black",
+          .evaluate = energy};
 }
 
 }  // namespace pelage::metrics

@@ -9,9 +9,9 @@ namespace pelage {
 namespace {
 
 std::vector<Metric>& registry() {
-  static std::vector<Metric> list{metrics::mse_metric(),      metrics::relative_mse_metric(), metrics::psnr_metric(),
-                                  metrics::ssim_metric(),     metrics::ms_ssim_metric(),      metrics::flip_metric(),
-                                  metrics::coverage_metric(), metrics::coverage_bias_metric()};
+  static std::vector<Metric> list{metrics::mse_metric(),      metrics::relative_mse_metric(),  metrics::psnr_metric(),
+                                  metrics::ssim_metric(),     metrics::ms_ssim_metric(),       metrics::flip_metric(),
+                                  metrics::coverage_metric(), metrics::coverage_bias_metric(), metrics::energy_metric()};
   return list;
 }
 

@@ -110,7 +110,7 @@ std::string label(const std::string& key) {
 }
 
 // Bias is a signed number: nearer to 0 is better, which a column cannot say.
-bool is_shown(const Metric& metric) { return metric.key != "coverage_bias"; }
+bool is_shown(const Metric& metric) { return metric.key != "coverage_bias" && metric.key != "energy"; }
 
 // Alpha, which the library takes where the channel is missing, is 1 all over pictures that have a background.
 Comparison without_alpha_error(Comparison comparison, const Picture& picture, const Picture& reference) {

@@ -172,5 +172,21 @@ TEST_F(CliCompare, BadInputIsNamed) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.png", "noise.png", "small.png", "nan.exr")) << "no map was written";
 }
 
+TEST_F(CliCompare, FollowsStrandsOfTheScene) {
+  ASSERT_EQ(run("grow straight --strands 300 --points 16 -o g.pelage").status, 0);
+  ASSERT_EQ(run("render g.pelage --size 96x96 --background transparent --method ssaa --spp 16 -o truth.exr").status, 0);
+  ASSERT_EQ(run("render g.pelage --size 96x96 --background transparent --spp 1 -o one.exr").status, 0);
+  const Json same = compare("truth.exr truth.exr --strands g.pelage");
+  EXPECT_EQ(same["continuity"], 1);
+  EXPECT_EQ(same["continuity_gap"], 0);
+  EXPECT_GT(same["continuity_length"], 50);
+  const Json one = compare("one.exr truth.exr --strands g.pelage --mask flyaway --background 1,1,1 --metrics mse");
+  EXPECT_LT(one["continuity"], 0.6);
+  EXPECT_LT(one["pixels"], 96 * 96 / 2);
+  EXPECT_THAT(run("compare one.exr truth.exr --strands g.pelage --metrics mse").out, HasSubstr("without a gap"));
+  expect_failure("one.exr truth.exr --mask flyaway", 1, "no channel `coverage`");
+  expect_failure("one.exr truth.exr --strands none.pelage", 1, "none.pelage");
+}
+
 }  // namespace
 }  // namespace pelage
