@@ -77,6 +77,9 @@ void accumulate_layers(OpacityMap& map) {
   parallel_for(map.crossings.size() / OpacityMap::kLayers, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       std::uint32_t* layers = map.crossings.data() + t * OpacityMap::kLayers;
+      std::uint32_t any = 0;
+      for (int i = 0; i < OpacityMap::kLayers; ++i) any |= layers[i];
+      if (any == 0) continue;  // most of the map sees no strand
       std::uint64_t sum = 0;
       for (int i = 0; i < OpacityMap::kLayers; ++i) {
         sum += layers[i];
