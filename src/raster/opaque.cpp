@@ -9,6 +9,7 @@
 #include "frame/camera_view.h"
 #include "frame/light_lookup.h"
 #include "kernel/scalar.h"
+#include "raster/coat.h"
 
 namespace pelage {
 namespace {
@@ -32,10 +33,13 @@ struct Shading {
   Vec3 to_eye;
   float depth;
   const MeshInstance* material;
+  const CoatAlbedo* coat;
 };
 
-Shading shading_at(const Scene& scene, const MeshTracer& meshes, const Ray& ray, const RayHit& hit) {
-  Shading s{meshes.surface(hit), normalize(-ray.direction), hit.distance, &scene.meshes[hit.mesh]};
+using Coats = std::vector<CoatAlbedo>;  // [meshes]
+
+Shading shading_at(const Scene& scene, const Coats& coats, const MeshTracer& meshes, const Ray& ray, const RayHit& hit) {
+  Shading s{meshes.surface(hit), normalize(-ray.direction), hit.distance, &scene.meshes[hit.mesh], &coats[hit.mesh]};
   if (dot(s.surface.geometric_normal, s.to_eye) < 0)
     s.surface.normal = -s.surface.normal, s.surface.geometric_normal = -s.surface.geometric_normal;
   return s;
@@ -86,17 +90,26 @@ float environment_visibility(const Shading& s, const LightRig& rig) {
   return all > 0 ? seen / all : 1;
 }
 
+/// The environment by its irradiance. A coat that is as rough as skin blurs it about as irradiance does, so what comes from
+/// around the mirrored direction is taken from there.
+Vec3 environment_light(const LightRig& rig, const Shading& s) {
+  const Vec3 n = s.surface.normal, mirrored = n * (2 * dot(n, s.to_eye)) - s.to_eye;
+  const Vec3 matte = s.surface.color * environment_irradiance(rig.irradiance, n) * (1 - s.material->specular);
+  const Vec3 gloss = environment_irradiance(rig.irradiance, mirrored) * s.coat->seen_from(dot(n, s.to_eye));
+  return (matte + gloss) * (environment_visibility(s, rig) / kPi);
+}
+
 Vec3 shade_opaque(const Scene& scene, const MeshTracer& meshes, const LightRig& rig, const Shading& s) {
-  Vec3 sum;
+  Vec3 sum = environment_light(rig, s);
   for (const PreparedLight& light : rig.lights)
     if (light.spread == 0) sum += direct_light(scene, meshes, s, light);
-  const Vec3 ambient = environment_irradiance(rig.irradiance, s.surface.normal);
-  return sum + s.surface.color * ambient * ((1 - s.material->specular) / kPi * environment_visibility(s, rig));
+  return sum;
 }
 
 /// Fills the depths and shades of a pixel and appends its distinct colors to `colors`.
-void trace_pixel(const Scene& scene, const CameraView& view, std::span<const Vec2> positions, const MeshTracer& meshes,
-                 const LightRig& rig, int x, int y, float* depth, std::uint8_t* shade, std::vector<Vec3>& colors) {
+void trace_pixel(const Scene& scene, const Coats& coats, const CameraView& view, std::span<const Vec2> positions,
+                 const MeshTracer& meshes, const LightRig& rig, int x, int y, float* depth, std::uint8_t* shade,
+                 std::vector<Vec3>& colors) {
   std::array<Ray, kMaxSamples> rays;
   std::array<RayHit, kMaxSamples> hits;
   const std::size_t n = positions.size();
@@ -108,7 +121,7 @@ void trace_pixel(const Scene& scene, const CameraView& view, std::span<const Vec
   for (std::size_t i = 0; i < n; ++i) {
     depth[i] = hits[i].distance, shade[i] = OpaqueLayer::kNone;
     if (hits[i].mesh == RayHit::kNone) continue;
-    const Shading s = shading_at(scene, meshes, rays[i], hits[i]);
+    const Shading s = shading_at(scene, coats, meshes, rays[i], hits[i]);
     std::size_t k = 0;
     while (k < count && !same_shade(shaded[k], s)) ++k;
     if (k == count) shaded[count++] = s, colors.push_back(shade_opaque(scene, meshes, rig, s));
@@ -141,12 +154,15 @@ OpaqueLayer trace_opaque(const Scene& scene, const CameraView& view, std::span<c
   const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   const std::size_t n = sample_positions.size();
   layer.depth.resize(pixels * n), layer.shade.resize(pixels * n), layer.first.resize(pixels);
+  Coats coats;
+  for (const MeshInstance& mesh : scene.meshes) coats.emplace_back(mesh.specular, mesh.roughness);
   std::vector<std::vector<Vec3>> runs((pixels + kRunPixels - 1) / kRunPixels);
   parallel_for(runs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r)
       for (std::size_t p = r * kRunPixels; p < std::min((r + 1) * kRunPixels, pixels); ++p) {
         layer.first[p] = static_cast<std::uint32_t>(runs[r].size());
-        trace_pixel(scene, view, sample_positions, meshes, rig, static_cast<int>(p % static_cast<std::size_t>(view.width)),
+        trace_pixel(scene, coats, view, sample_positions, meshes, rig,
+                    static_cast<int>(p % static_cast<std::size_t>(view.width)),
                     static_cast<int>(p / static_cast<std::size_t>(view.width)), layer.depth.data() + p * n,
                     layer.shade.data() + p * n, runs[r]);
       }

@@ -9,8 +9,9 @@
 #include <cstring>
 
 #include "frame/camera_view.h"
-#include "kernel/scalar.h"
 #include "frame/sample_positions.h"
+#include "kernel/scalar.h"
+#include "raster/coat.h"
 
 namespace pelage {
 namespace {
@@ -102,6 +103,30 @@ TEST(Opaque, GgxReflectsNoMoreThanItGets) {
   }
 }
 
+TEST(Opaque, CoatOfEvenLightIsTheIntegral) {
+  constexpr int kSteps = 300;
+  float worst = 0;
+  for (const float alpha : {0.1f, 0.3f, 0.5f, 1.f})
+    for (const float f0 : {0.f, 0.04f, 1.f}) {
+      const CoatAlbedo coat(f0, alpha);
+      for (const float cosine : {0.05f, 0.11f, 0.3f, 0.52f, 0.8f, 1.f}) {
+        const Vec3 to_eye{std::sqrt(1 - cosine * cosine), 0, cosine};
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i)
+          for (int j = 0; j < kSteps; ++j) {
+            const float z = (static_cast<float>(i) + 0.5f) / kSteps, phi = kPi * (static_cast<float>(j) + 0.5f) / kSteps;
+            const float r = std::sqrt(1 - z * z);
+            const Vec3 to_light{r * std::cos(phi), r * std::sin(phi), z};
+            sum += static_cast<double>(kernel::shade_ggx({0, 0, 1}, to_eye, to_light, f0, alpha));
+          }
+        const double exact = sum * 2 * static_cast<double>(kPi) / (kSteps * kSteps);
+        const float error = std::fabs(coat.seen_from(cosine) - static_cast<float>(exact));
+        worst = std::max(worst, error - kCoatAlbedoMaxErrorOfMirrors * f0);
+      }
+    }
+  EXPECT_LE(worst, kCoatAlbedoMaxAbsError);
+}
+
 TEST(Opaque, MeshesShadeEachOther) {
   Scene scene = wall_scene();
   scene.meshes.push_back(wall({0.5f, 0, -0.5f}, 0.1f));  // keeps the slanting light off the wall's middle
@@ -113,12 +138,15 @@ TEST(Opaque, MeshesShadeEachOther) {
   EXPECT_GT(opaque_color(layer, middle(layer)).x, 0.1f);
 }
 
-TEST(Opaque, ConstantSkyLightsTheOpenWallWithItsRadianceTimesAlbedo) {
+TEST(Opaque, ConstantSkyLightsTheOpenWallWithItsRadianceTimesAlbedoAndCoat) {
   const Scene scene = wall_scene();
   LightRig rig;
   rig.irradiance[0] = Vec3(1, 1, 1) * (kPi * std::sqrt(4 * kPi));  // radiance 1: c00 = π·∫ Y00 dω
   const OpaqueLayer layer = trace(scene, rig);
-  EXPECT_NEAR(opaque_color(layer, middle(layer)).x, 0.5f * (1 - scene.meshes[0].specular), 1e-3f);
+  const MeshInstance& m = scene.meshes[0];
+  const float coat = CoatAlbedo(m.specular, m.roughness).seen_from(1);
+  EXPECT_GT(coat, 0.02f);
+  EXPECT_NEAR(opaque_color(layer, middle(layer)).x, 0.5f * (1 - m.specular) + coat, 1e-3f);
 }
 
 TEST(Opaque, TextureIsUpright) {
