@@ -158,7 +158,11 @@ PixelMask screen_hair(const StrandLayer& layer, int width, int height) {
 template <class Hair>
 void resolve_hair(const StrandLayer& layer, Matte& matte, const Hair& hair) {
   matte.hair = screen_hair(layer, matte.width, matte.height);
-  matte.hair.parallel_for_each([&](int x, int y) { resolve_pixel(layer, x, y, hair, matte); });
+  // Rows are cleared when they are about to be written, and lie in the cache.
+  parallel_for(static_cast<std::size_t>(matte.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    matte.clear(static_cast<int>(first), static_cast<int>(last));
+    matte.hair.for_each(first, last, [&](int x, int y) { resolve_pixel(layer, x, y, hair, matte); });
+  });
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ constexpr int kBorder = 7;  // the most that a kernel of these tests reaches
 
 Matte random_matte(int width, int height, float hair, std::uint32_t seed = 1) {
   Matte m(width, height, kBorder, false);
+  m.clear(0, height);
   Rng rng(4, seed);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -236,6 +237,7 @@ TEST(Matte, LiesOverWhatIsBehind) {
   behind.width = 4, behind.height = 2, behind.color.resize(8);
   for (std::size_t p = 0; p < 8; ++p) behind.color[p] = p % 4 < 2 ? Vec4(1, 2, 3, 1) : Vec4(0, 0, 0, p % 4 == 2 ? 1 : 0);
   Matte m(2, 1, 0, false);
+  m.clear(0, 1);
   for (int x = 0; x < 2; ++x) m.color[m.index(x, 0)] = {0.25f, 0, 0.5f, 0.5f}, m.hair.add(x, 0);
   const Image image = lay_over(m, {}, layer, behind, 1);
   const float expected[] = {1.5f, 2, 4, 1, 0.5f, 0, 1, 0.75f};
@@ -255,6 +257,7 @@ TEST(Matte, LiesWhereItsLayerIs) {
   behind.width = 4, behind.height = 5, behind.color.resize(20);
   behind.color.fill({1, 1, 1, 1});
   Matte m(2, 2, 0, false);
+  m.clear(0, 2);
   m.left = 1, m.top = 2;
   m.color[m.index(1, 0)].w = 1, m.hair.add(1, 0);
   const Image image = lay_over(m, {}, layer, behind, 0);

@@ -72,10 +72,13 @@ Matte::Matte(int w, int h, int b, bool exact_coverage) : width(w), height(h), bo
   const std::size_t pixels = stride() * static_cast<std::size_t>(h + 2 * b);
   color.resize(pixels), weight.resize(pixels), tangent.resize(pixels);
   if (exact_coverage) coverage.resize(pixels);
-  parallel_for(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    std::fill(color.begin() + begin, color.begin() + end, Vec4());
-    std::fill(weight.begin() + begin, weight.begin() + end, 0.f);
-  });
+}
+
+void Matte::clear(int first, int last) {
+  const std::size_t begin = index(-border, first == 0 ? -border : first),
+                    end = index(-border, last == height ? height + border : last);
+  std::fill(color.begin() + begin, color.begin() + end, Vec4());
+  std::fill(weight.begin() + begin, weight.begin() + end, 0.f);
 }
 
 Vec2 MeanDirection::mean() const {

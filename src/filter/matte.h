@@ -17,8 +17,10 @@ namespace pelage {
 class Matte {
  public:
   Matte() = default;
-  /// Without hair, and without a border where nobody needs one. Directions and coverage are undefined.
+  /// Pixels are undefined until they are cleared or written.
   Matte(int width, int height, int border, bool exact_coverage);
+  /// Takes the hair out of rows first ≤ y < last: color and weight. Those at the edge of the matte with the border beside them.
+  void clear(int first, int last);
 
   int left = 0, top = 0;      ///< screen pixel of the picture that the first one inside the border is
   int width = 0, height = 0;  ///< screen pixels, without the border
