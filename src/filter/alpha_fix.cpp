@@ -110,7 +110,7 @@ std::size_t sample_of(const StrandLayer& layer, std::size_t corner, std::size_t 
 /// Fills screen pixel (x, y): hair(p, color) gives the α of visibility pixel p, which shows hair, and may change its color.
 template <class Hair>
 void resolve_pixel(const StrandLayer& layer, int x, int y, const Hair& hair, Matte& matte) {
-  const auto samples = static_cast<std::size_t>(layer.side * layer.side);
+  const auto side = static_cast<std::size_t>(layer.side), samples = side * side;
   const std::size_t corner = corner_of(layer, x, y), out = matte.index(x, y);
   const float share = 1 / static_cast<float>(samples);
   Vec3 sum;
@@ -132,7 +132,7 @@ void resolve_pixel(const StrandLayer& layer, int x, int y, const Hair& hair, Mat
 
 /// Matte::coverage: means over the visibility pixels of a screen pixel.
 void average_coverage(const StrandLayer& layer, Matte& matte) {
-  const auto samples = static_cast<std::size_t>(layer.side * layer.side);
+  const auto side = static_cast<std::size_t>(layer.side), samples = side * side;
   parallel_for(static_cast<std::size_t>(matte.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
     for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y)
       for (int x = 0; x < matte.width; ++x) {

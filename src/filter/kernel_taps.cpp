@@ -8,8 +8,6 @@
 namespace pelage {
 namespace {
 
-constexpr int kQuadrant = DirectionCells::kDirections / 2;  // cells of 90°
-
 float inverse_square(float sigma) { return std::isinf(sigma) ? 0 : 1 / (sigma * sigma); }
 
 kernel::FilterKernel terms_of(const AnisotropicKernel& k) {

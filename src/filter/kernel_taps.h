@@ -17,13 +17,13 @@ namespace pelage {
 /// Directions without a sign, in kDirections cells; what lies in a cell takes the direction of its middle, at most 0.45° off.
 /// Cells are even in the share of x in |x| + |y|, which needs no arc tangent; the axes and diagonals are middles.
 struct DirectionCells {
-  static constexpr int kDirections = 256;
+  static constexpr int kQuadrant = 128, kDirections = 2 * kQuadrant;  ///< cells of 90° and of 180°
   /// The cell of a vector other than 0.
   static int cell_of(Vec2 t) {
     // Turned into the half plane y ≥ 0: from (1, 0) over (0, 1) to (−1, 0).
     const float x = t.y < 0 ? -t.x : t.x, y = std::fabs(t.y);
     const float share = x / (std::fabs(x) + y);  // 1 … −1
-    return static_cast<int>((1 - share) * (kDirections / 2) + 0.5f) % kDirections;
+    return static_cast<int>((1 - share) * kQuadrant + 0.5f) % kDirections;
   }
   /// The unit vector in the middle of a cell.
   static Vec2 middle(int cell);

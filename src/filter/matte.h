@@ -32,7 +32,7 @@ class Matte {
   Buffer<Vec2> tangent;    ///< unit vector on the screen along the hair, sign arbitrary; 0, 0 seen end-on. Only for `hair`
   Buffer<float> coverage;  ///< the opacity that the picture gets, where it is known exactly; else empty
 
-  std::size_t stride() const { return static_cast<std::size_t>(width + 2 * border); }
+  std::size_t stride() const { return static_cast<std::size_t>(width) + 2 * static_cast<std::size_t>(border); }
   /// −border ≤ x < width + border, and so for y.
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y + border) * stride() + static_cast<std::size_t>(x + border);
