@@ -44,7 +44,7 @@ class SegmentAlpha {
       SegmentCounts::add_filled(counts_[slot], static_cast<std::uint32_t>(fills.size()));
     });
     layer_.hair.parallel_for_each([&](int x, int y) {
-      const std::size_t p = static_cast<std::size_t>(y) * static_cast<std::size_t>(layer_.width) + static_cast<std::size_t>(x);
+      const std::size_t p = layer_.index(x, y);
       const VisibilitySample& v = layer_.visibility[p];
       if (v.is_filled()) return;
       const std::uint32_t slot = slots_[p] = counts_.find(v.primitive());
@@ -96,49 +96,35 @@ class SegmentAlpha {
   Buffer<std::uint32_t> slots_;  // [h·w] of what pixels with hair count with, kNone for nothing linked
 };
 
-/// The visibility pixel that screen pixel (x, y) begins with.
-std::size_t corner_of(const StrandLayer& layer, int x, int y) {
-  return static_cast<std::size_t>(y * layer.side) * static_cast<std::size_t>(layer.width) +
-         static_cast<std::size_t>(x * layer.side);
-}
-/// Its visibility pixel number s.
-std::size_t sample_of(const StrandLayer& layer, std::size_t corner, std::size_t s) {
-  const auto side = static_cast<std::size_t>(layer.side);
-  return corner + s / side * static_cast<std::size_t>(layer.width) + s % side;
-}
-
 /// Fills screen pixel (x, y): hair(p, color) gives the α of visibility pixel p, which shows hair, and may change its color.
 template <class Hair>
 void resolve_pixel(const StrandLayer& layer, int x, int y, const Hair& hair, Matte& matte) {
-  const auto side = static_cast<std::size_t>(layer.side), samples = side * side;
-  const std::size_t corner = corner_of(layer, x, y), out = matte.index(x, y);
-  const float share = 1 / static_cast<float>(samples);
+  const float share = 1 / static_cast<float>(layer.side * layer.side);
   Vec3 sum;
   Vec2 tangent;
   MeanDirection direction;
   float alpha = 0;
-  for (std::size_t s = 0; s < samples; ++s) {
-    const std::size_t p = sample_of(layer, corner, s);
-    if (!layer.visibility[p].is_hair()) continue;
+  layer.for_each_sample(x, y, [&](std::size_t p) {
+    if (!layer.visibility[p].is_hair()) return;
     Vec3 color = layer.color[p];
     const float a = hair(p, color);
     sum += color * a, alpha += a;
     tangent = layer.visibility[p].tangent();
-    if (samples > 1) direction.add(tangent);
-  }
-  matte.color[out] = {sum.x * share, sum.y * share, sum.z * share, alpha * share};
-  matte.lie(x, y, samples > 1 ? direction.mean() : tangent);
+    if (layer.side > 1) direction.add(tangent);
+  });
+  matte.color[matte.index(x, y)] = {sum.x * share, sum.y * share, sum.z * share, alpha * share};
+  matte.lie(x, y, layer.side > 1 ? direction.mean() : tangent);
 }
 
 /// Matte::coverage: means over the visibility pixels of a screen pixel.
 void average_coverage(const StrandLayer& layer, Matte& matte) {
-  const auto side = static_cast<std::size_t>(layer.side), samples = side * side;
+  const float samples = static_cast<float>(layer.side * layer.side);
   parallel_for(static_cast<std::size_t>(matte.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
     for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y)
       for (int x = 0; x < matte.width; ++x) {
         float sum = 0;
-        for (std::size_t s = 0; s < samples; ++s) sum += layer.coverage[sample_of(layer, corner_of(layer, x, y), s)];
-        matte.coverage[matte.index(x, y)] = sum / static_cast<float>(samples);
+        layer.for_each_sample(x, y, [&](std::size_t p) { sum += layer.coverage[p]; });
+        matte.coverage[matte.index(x, y)] = sum / samples;
       }
   });
 }

@@ -22,15 +22,6 @@ constexpr float kShortestStep = 1e-4f;  // of a span: gives up halving where a s
 constexpr int neighbor_x(int n) { return n % 3 - 1; }
 constexpr int neighbor_y(int n) { return n / 3 - 1; }
 
-/// The grid of a layer.
-struct Grid {
-  int width, height;
-  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  }
-};
-
 /// How much a score falls short of 1, in 12 bits.
 std::uint16_t loss_of(float score) { return static_cast<std::uint16_t>((1 - std::clamp(score, 0.f, 1.f)) * 4095 + 0.5f); }
 constexpr std::uint16_t kNoWalk = 4096;
@@ -43,7 +34,7 @@ struct Choice {
 class Selector {
  public:
   Selector(const StrandLayer& layer, const PixelMask& hair, const LinkSettings& settings)
-      : layer_(layer), hair_(hair), settings_(settings), grid_{layer.width, layer.height} {
+      : layer_(layer), hair_(hair), settings_(settings) {
     for (int n = 0; n < 9; ++n) {  // from the neighbor to the pixel
       const Vec2 offset(static_cast<float>(-neighbor_x(n)), static_cast<float>(-neighbor_y(n)));
       if (n != 4) axis_[n] = kernel::filter_alignment_axis(offset, settings.sigma);
@@ -67,7 +58,7 @@ class Selector {
   float score_of(int x, int y, int n, float front) const {
     const int nx = x + neighbor_x(n), ny = y + neighbor_y(n);
     if (n == 4 || !hair_.contains(nx, ny)) return 0;
-    const std::size_t i = grid_.index(nx, ny);
+    const std::size_t i = layer_.index(nx, ny);
     const float fit = std::fabs(dot(axis_[n], layer_.visibility[i].tangent()));
     if (!(settings_.depth_sigma > 0)) return fit;
     return fit * kernel::filter_depth_continuity((layer_.depth[i] - front) / front, settings_.depth_sigma);
@@ -76,14 +67,13 @@ class Selector {
     float nearest = INFINITY;
     for (int n = 0; n < 9; ++n)
       if (const int nx = x + neighbor_x(n), ny = y + neighbor_y(n); hair_.contains(nx, ny))
-        nearest = std::min(nearest, layer_.depth[grid_.index(nx, ny)]);
+        nearest = std::min(nearest, layer_.depth[layer_.index(nx, ny)]);
     return nearest;
   }
 
   const StrandLayer& layer_;
   const PixelMask& hair_;
   const LinkSettings& settings_;
-  Grid grid_;
   Vec2 axis_[9];
 };
 
@@ -104,7 +94,7 @@ std::uint64_t order_of(std::uint16_t loss, float depth, std::size_t source) {
 class Walker {
  public:
   Walker(const StrandLayer& layer, const PixelMask& hair, const StrandCurves& curves)
-      : layer_(layer), hair_(hair), curves_(curves), grid_{layer.width, layer.height} {}
+      : layer_(layer), hair_(hair), curves_(curves) {}
 
   void prefetch(std::size_t source) const { curves_.prefetch(layer_.visibility[source].primitive()); }
   StrandCurve curve_of(std::size_t source) const { return curves_.curve_of(layer_.visibility[source].primitive()); }
@@ -129,8 +119,8 @@ class Walker {
       s = next, last = point;
       const int x = static_cast<int>(std::floor(point.screen.x)) - layer_.left,
                 y = static_cast<int>(std::floor(point.screen.y)) - layer_.top;
-      if (!grid_.contains(x, y)) return;
-      const std::size_t entered = grid_.index(x, y);
+      if (!layer_.contains(x, y)) return;
+      const std::size_t entered = layer_.index(x, y);
       if (entered == pixel) continue;
       pixel = entered;
       if (pixel == source) continue;
@@ -145,12 +135,11 @@ class Walker {
 
  private:
   /// No walk along a strand needs more, unless the strand winds through the layer's pixels without ever meeting a sample.
-  int most_steps() const { return 4 * (grid_.width + grid_.height); }
+  int most_steps() const { return 4 * (layer_.width + layer_.height); }
 
   const StrandLayer& layer_;
   const PixelMask& hair_;
   const StrandCurves& curves_;
-  Grid grid_;
 };
 
 /// What every empty pixel next to hair takes, if anything.
@@ -161,10 +150,9 @@ struct Choices {
 
 Choices choose_all(const StrandLayer& layer, const PixelMask& hair, const LinkSettings& settings) {
   const Selector selector(layer, hair, settings);
-  const Grid grid{layer.width, layer.height};
   Choices all{PixelMask(layer.width, layer.height), Buffer<Choice>(layer.visibility.size())};
   hair.grown(1).without(hair).parallel_for_each([&](int x, int y) {
-    if (selector.choose(x, y, all.choices[grid.index(x, y)])) all.made.add(x, y);
+    if (selector.choose(x, y, all.choices[layer.index(x, y)])) all.made.add(x, y);
   });
   return all;
 }
@@ -177,13 +165,12 @@ struct Source {
 };
 
 Source make_source(const StrandLayer& layer, const Choices& all, int x, int y) {
-  const Grid grid{layer.width, layer.height};
-  Source source{grid.index(x, y)};
+  Source source{layer.index(x, y)};
   const Vec2 tangent = layer.visibility[source.pixel].tangent();
   for (int n = 0; n < 9; ++n) {
     const int ex = x + neighbor_x(n), ey = y + neighbor_y(n);
     if (!all.made.contains(ex, ey)) continue;
-    const Choice& choice = all.choices[grid.index(ex, ey)];
+    const Choice& choice = all.choices[layer.index(ex, ey)];
     if (choice.neighbor != 8 - n) continue;  // the empty pixel sees its source on the other side
     const Vec2 offset(static_cast<float>(neighbor_x(n)), static_cast<float>(neighbor_y(n)));
     std::uint16_t& least = source.loss[dot(offset, tangent) > 0];

@@ -14,18 +14,10 @@ namespace {
 
 constexpr std::size_t kRowsPerTask = 8;
 
-/// Calls f(p) for the visibility pixels p, of a grid that is `stride` wide, of screen pixel (x, y).
-template <class F>
-void for_each_sample(int side, int stride, int x, int y, const F& f) {
-  for (int j = y * side; j < (y + 1) * side; ++j)
-    for (int i = x * side; i < (x + 1) * side; ++i)
-      f(static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i));
-}
-
 /// Camera z of the nearest hair of screen pixel (x, y); +inf for none.
 float nearest_hair(const StrandLayer& layer, int x, int y) {
   float nearest = std::numeric_limits<float>::infinity();
-  for_each_sample(layer.side, layer.width, x, y, [&](std::size_t p) { nearest = std::min(nearest, layer.depth[p]); });
+  layer.for_each_sample(x, y, [&](std::size_t p) { nearest = std::min(nearest, layer.depth[p]); });
   return nearest;
 }
 
@@ -33,7 +25,7 @@ float nearest_hair(const StrandLayer& layer, int x, int y) {
 float farthest_opaque(const StrandLayer& layer, int x, int y) {
   if (layer.opaque_depth.empty()) return std::numeric_limits<float>::infinity();
   float farthest = 0;
-  for_each_sample(layer.side, layer.width, x, y, [&](std::size_t p) { farthest = std::max(farthest, layer.opaque_depth[p]); });
+  layer.for_each_sample(x, y, [&](std::size_t p) { farthest = std::max(farthest, layer.opaque_depth[p]); });
   return farthest;
 }
 
@@ -41,24 +33,19 @@ void add_scaled(Vec4& sum, Vec4 v, float weight) {
   sum.x += weight * v.x, sum.y += weight * v.y, sum.z += weight * v.z, sum.w += weight * v.w;
 }
 
-/// What is seen through the hair of screen pixel (x, y): the mean of what is behind its visibility pixels, of those that no
-/// sample of hair hides where there are such.
+/// What is seen through the hair of screen pixel (x, y) of the picture: the mean of what is behind its visibility pixels, of
+/// those that no sample of hair hides where there are such.
 Vec4 seen_behind(const StrandLayer& layer, const Behind& behind, int x, int y) {
-  if (layer.side == 1)
-    return behind.at(static_cast<std::size_t>(y) * static_cast<std::size_t>(behind.width) + static_cast<std::size_t>(x));
+  if (layer.side == 1) return behind.at(behind.index(x, y));
   Vec4 open, all;
   float count = 0;
   for (int j = y * layer.side; j < (y + 1) * layer.side; ++j)
     for (int i = x * layer.side; i < (x + 1) * layer.side; ++i) {
-      const auto at = [](int u, int v, int width) {
-        return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
-      };
-      const Vec4 color = behind.at(at(i, j, behind.width));
+      const Vec4 color = behind.at(behind.index(i, j));
       add_scaled(all, color, 1);
       const int u = i - layer.left, v = j - layer.top;
-      const bool inside = u >= 0 && v >= 0 && u < layer.width && v < layer.height;
-      const VisibilitySample sample = inside ? layer.visibility[at(u, v, layer.width)] : VisibilitySample();
-      if (!sample.is_hair() || sample.is_filled()) add_scaled(open, color, 1), count += 1;
+      const bool hidden = layer.hair.contains(u, v) && !layer.visibility[layer.index(u, v)].is_filled();
+      if (!hidden) add_scaled(open, color, 1), count += 1;
     }
   Vec4 mean;
   if (count > 0) add_scaled(mean, open, 1 / count);

@@ -56,13 +56,10 @@ Buffer<float> nearest_of(const StrandLayer& layer, const Behind& behind) {
   Buffer<float> nearest(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const auto at = [](int i, int j, int stride) {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i);
-      };
       const int i = x * side - layer.left, j = y * side - layer.top;
-      const bool inside = i >= 0 && j >= 0 && i < layer.width && j < layer.height;
-      nearest[at(x, y, width)] = std::min(inside ? layer.depth[at(i, j, layer.width)] : INFINITY,
-                                          behind.depth.empty() ? INFINITY : behind.depth[at(x * side, y * side, behind.width)]);
+      nearest[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] =
+          std::min(layer.contains(i, j) ? layer.depth[layer.index(i, j)] : INFINITY,
+                   behind.depth.empty() ? INFINITY : behind.depth[behind.index(x * side, y * side)]);
     }
   return nearest;
 }

@@ -52,7 +52,7 @@ class PixelWriter {
 
   void write(int x, int y, float* out) const {
     const Behind& behind = input_.behind;
-    const auto q = static_cast<std::size_t>(y) * static_cast<std::size_t>(behind.width) + static_cast<std::size_t>(x);
+    const std::size_t q = behind.index(x, y);
     const Vec4 back = behind.at(q);
     const Vec3 back_color = Vec3(back.x, back.y, back.z) * light_;
     const std::optional<std::size_t> p = in_layer(x, y);
@@ -85,8 +85,8 @@ class PixelWriter {
   std::optional<std::size_t> in_layer(int x, int y) const {
     const StrandLayer& l = input_.layer;
     const int i = x - l.left, j = y - l.top;
-    if (i < 0 || j < 0 || i >= l.width || j >= l.height) return std::nullopt;
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(l.width) + static_cast<std::size_t>(i);
+    if (!l.contains(i, j)) return std::nullopt;
+    return l.index(i, j);
   }
 
   const Scene& scene_;

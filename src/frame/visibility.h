@@ -3,6 +3,7 @@
 
 #include <pelage/scene.h>
 
+#include <cstddef>
 #include <cstdint>
 
 #include "core/buffer.h"
@@ -65,6 +66,18 @@ struct StrandLayer {
   Buffer<Vec3> color;                   ///< [h·w] its scene-linear radiance; 0 for none
   Buffer<float> coverage;               ///< [h·w] share of the pixel that strands cover, 0…1; or empty where nobody knows
   Buffer<float> opaque_depth;           ///< [h·w] camera z of the opaque scene, +inf for none; or empty without one
+
+  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
+  /// Of visibility pixel (x, y) of the layer.
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+  /// f(p) for the visibility pixels p of screen pixel (x, y) of the layer.
+  template <class F>
+  void for_each_sample(int x, int y, const F& f) const {
+    for (int j = y * side; j < (y + 1) * side; ++j)
+      for (int i = x * side; i < (x + 1) * side; ++i) f(index(i, j));
+  }
 };
 
 /// Makes layer.hair what layer.visibility shows.
@@ -78,7 +91,10 @@ struct Behind {
   Backdrop backdrop;          ///< what is seen elsewhere
   Buffer<Vec4> color;         ///< [h·w] instead of all that: linear, premultiplied R, G, B, A; or empty
 
-  /// Of pixel p = y·width + x: linear, premultiplied R, G, B, A.
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+  /// Of the pixel with this index: linear, premultiplied R, G, B, A.
   Vec4 at(std::size_t p) const;
 };
 

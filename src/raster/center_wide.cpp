@@ -31,10 +31,6 @@ using wide::Mask;
 using Ints = hn::Vec<wide::IntTag>;
 using Uints = hn::Vec<wide::UintTag>;
 
-const wide::FloatTag kFloat{};
-const wide::IntTag kInt{};
-const wide::UintTag kUint{};
-
 /// Bit l of the result tells whether fragment l may pass the depth test of its key as it is now.
 HWY_INLINE std::uint64_t passing(const std::uint32_t* pixel, const float* depth, const PixelKey* keys) {
   std::uint64_t bits = 0;

@@ -19,10 +19,6 @@ namespace {
 using wide::Float;
 using wide::Mask;
 
-const wide::FloatTag kFloat{};
-const wide::IntTag kInt{};
-const wide::UintTag kUint{};
-
 /// Segments that may reach a pixel that is not full. Those that reach farther than the next tile always may.
 Mask reaching_open(const ScreenBlock& block, std::size_t j, const FullTiles& tiles) {
   const Float x = wide::load(&block.x[j]), y = wide::load(&block.y[j]), x1 = wide::load(&block.x[j + 1]),

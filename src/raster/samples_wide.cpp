@@ -32,9 +32,6 @@ using wide::Float;
 using wide::Mask;
 using Uints = hn::Vec<wide::UintTag>;
 
-const wide::FloatTag kFloat{};
-const wide::UintTag kUint{};
-
 /// Lowers the samples in `mask` of a pixel that this thread owns to `key`.
 template <int kSamples>
 HWY_INLINE void enter(PixelKey key, std::uint32_t mask, PixelKey* pixel) {

@@ -17,6 +17,10 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+const wide::FloatTag kFloat{};
+const wide::IntTag kInt{};
+const wide::UintTag kUint{};
+
 struct SegmentLanes {
   wide::RasterBand band;
   wide::Float column, last;            // current and last column; a lane with column > last is done
@@ -31,11 +35,10 @@ struct SegmentLanes {
 /// side) their bands may reach; false where none crosses any.
 HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width, int height, float at, float at_last,
                               SegmentLanes& w) {
-  const wide::UintTag uint_tag;
   const auto pair = [&](const Buffer<float>& a, const Buffer<float>& b, std::size_t i) {
     return wide::Vec2(wide::load(&a[i]), wide::load(&b[i]));
   };
-  w.id = hn::LoadU(uint_tag, &block.id[j]);
+  w.id = hn::LoadU(kUint, &block.id[j]);
   w.band = wide::raster_band(pair(block.x, block.y, j), pair(block.x, block.y, j + 1), wide::load(&block.radius[j]),
                              wide::load(&block.radius[j + 1]), wide::load(&block.depth[j]), wide::load(&block.depth[j + 1]),
                              pair(block.cap_x, block.cap_y, j), pair(block.cap_x, block.cap_y, j + 1));
@@ -44,12 +47,12 @@ HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width
   w.rows = select(w.band.x_major, h_pixels, w_pixels);
   w.column = max(ceil(w.band.first - wide::Float(at_last)), wide::Float(0.0f));
   w.last = min(floor(w.band.last - wide::Float(at)), columns - wide::Float(1.0f));
-  const auto x_major = hn::RebindMask(uint_tag, w.band.x_major.m);
-  const auto one = hn::Set(uint_tag, 1), line = hn::Set(uint_tag, static_cast<std::uint32_t>(width));
+  const auto x_major = hn::RebindMask(kUint, w.band.x_major.m);
+  const auto one = hn::Set(kUint, 1), line = hn::Set(kUint, static_cast<std::uint32_t>(width));
   w.column_step = hn::IfThenElse(x_major, one, line);
   w.row_step = hn::IfThenElse(x_major, line, one);
-  w.origin = hn::Set(uint_tag, 0u - 0x4b000000u * (static_cast<std::uint32_t>(width) + 1));
-  const wide::Mask none{hn::RebindMask(wide::kFloatTag, hn::Eq(w.id, hn::Set(uint_tag, ScreenBlock::kNoSegment)))};
+  w.origin = hn::Set(kUint, 0u - 0x4b000000u * (static_cast<std::uint32_t>(width) + 1));
+  const wide::Mask none{hn::RebindMask(wide::kFloatTag, hn::Eq(w.id, hn::Set(kUint, ScreenBlock::kNoSegment)))};
   const wide::Mask used{hn::FirstN(wide::kFloatTag, block.count - 1 - j)};
   const wide::Mask drawn = used && !none && w.column <= w.last;
   w.last = select(drawn, w.last, wide::Float(-1.0f));
