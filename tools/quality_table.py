@@ -5,18 +5,22 @@
   tools/quality_table.py --out out/quality --reference-spp 64 --only straight # minutes
 
 Grows straight50k, curly50k and ponytail, takes Sintel's hair from PELAGE_DATA where it is there, renders each over a dark and a bright
-background by every method, and compares with supersampling. At the end stand OUT/quality.md and OUT/quality.json. What the same
-program has made before is kept, so a run that was stopped goes on where it was.
+background by every method, and compares with supersampling. OUT/quality.md and OUT/quality.json have all that was measured so far. What
+the same program has made before is kept, so a run that was stopped goes on where it was; references stay good for any program that
+renders the same (tools/reference_cache.py) in the folder --cache. --readme puts the sum of it into the README.
 """
 import argparse
+import hashlib
 import json
 import os
 import pathlib
 import re
 import subprocess
 import sys
+import time
 
 from demo_report import ROOT, Failure, Workshop
+from reference_cache import ReferenceCache
 
 METHODS = {  # name: (label, options of `pelage render`)
     "one": ("one sample", ["--spp", "1"]),
@@ -66,6 +70,7 @@ class Bench:
 
     def __init__(self, shop, subject, options):
         self.shop, self.subject, self.options = shop, subject, options
+        self.cache = ReferenceCache(shop, options.cache)
         self.size = ["--size", options.size]
         self.files = [f for f in subject.inputs if not f.startswith("--")]
 
@@ -75,12 +80,13 @@ class Bench:
         return output
 
     def reference(self):
-        """Transparent, so that it serves for every background."""
+        """(file, seconds it took or None); transparent, so that it serves for every background."""
         if self.options.references:
             file = str((pathlib.Path(self.options.references) / f"{self.subject.name}.exr").resolve())
             self.compare(file, file, "--mask", "hair", "--metrics", "mse")  # says what is wrong with an opaque one
-            return file
-        return self.render("reference", ["--method", "ssaa", "--spp", str(self.options.reference_spp), "--background", "transparent"])
+            return file, None
+        arguments = [*self.subject.inputs, *self.size, "--background", "transparent"]
+        return self.cache.picture(arguments, self.files, self.options.reference_spp, self.subject.name)
 
     def compare(self, test, reference, *arguments):
         done = subprocess.run([self.shop.pelage, "compare", test, reference, "--json", *arguments], cwd=self.shop.folder,
@@ -89,8 +95,27 @@ class Bench:
             raise Failure(done.stderr.strip().splitlines()[0] if done.stderr.strip() else f"exit status {done.returncode}")
         return json.loads(done.stdout)
 
-    def measure(self, name, arguments, reference, hair):
-        """{column: value} of one method."""
+    def known_or_measured(self, name, reference):
+        """{column: value} of one method, and the seconds it took; kept like pictures are."""
+        note = self.shop.folder / "rows" / f"{self.subject.name}-{name}.json"
+        stamp = hashlib.sha256(json.dumps([self.shop.program, METHODS[name][1], self.size, str(reference)]).encode())
+        for file in [*self.files, reference]:
+            stamp.update((self.shop.folder / file).read_bytes())
+        try:
+            told = json.loads(note.read_text())
+            if told["stamp"] == stamp.hexdigest():
+                return told["row"], told["seconds"]
+        except (OSError, ValueError, KeyError):
+            pass
+        start = time.monotonic()
+        row = self.measure(name, METHODS[name][1], reference)
+        seconds = round(time.monotonic() - start, 1)
+        note.parent.mkdir(exist_ok=True)
+        note.write_text(json.dumps({"stamp": stamp.hexdigest(), "seconds": seconds, "row": row}) + "\n")
+        return row, seconds
+
+    def measure(self, name, arguments, reference):
+        hair = self.render("hair", ["--view", "coverage", "--spp", "1"])
         pictures = {b: self.render(f"{name}-{b}", [*arguments, "--background", color]) for b, color in BACKGROUNDS.items()}
 
         def against(background, *more):
@@ -106,25 +131,37 @@ class Bench:
                 "energy_bright": bright["energy"], "flyaway_length": flyaway["continuity_length"]}
 
 
-def measure_subject(shop, subject, chosen, options):
-    """{method: {column: value}}; a method that this build lacks is told and left out."""
+class Results:
+    """All that was measured so far: {subject: {method: {column: value}}} and {subject: {what: seconds}}."""
+
+    def __init__(self, folder, options):
+        self.folder, self.options = folder, options
+        self.rows, self.seconds = {}, {}
+
+    def add(self, subject, name, row, seconds):
+        self.rows.setdefault(subject, {})[name] = row
+        self.seconds.setdefault(subject, {})[name] = seconds
+        write_results(self.folder, self.rows, self.seconds, self.options)
+
+
+def measure_subject(shop, subject, options, results):
+    """Adds the methods one by one; one that this build lacks is told and left out."""
     bench = Bench(shop, subject, options)
     if subject.grow:
         print(f"{subject.name}: growing", flush=True)
         shop.make(subject.grow, [], subject.inputs[0])
-    print(f"{subject.name}: reference", flush=True)
-    reference = bench.reference()
-    hair = bench.render("hair", ["--view", "coverage", "--spp", "1"])
-    rows = {}
-    for i, name in enumerate(chosen):
-        print(f"{subject.name}: {METHODS[name][0]} [{i + 1}/{len(chosen)}]", flush=True)
+    reference, took = bench.reference()
+    results.seconds[subject.name] = {} if took is None else {"reference": took}
+    for i, name in enumerate(options.methods):
+        print(f"{subject.name}: {METHODS[name][0]} [{i + 1}/{len(options.methods)}]", end="", flush=True)
         try:
-            rows[name] = bench.measure(name, METHODS[name][1], reference, hair)
+            row, seconds = bench.known_or_measured(name, reference)
+            print(f", {seconds:.0f} s", flush=True)
+            results.add(subject.name, name, row, seconds)
         except Failure as failure:
             if name != "oidn":
                 raise
-            print(f"{METHODS[name][0]} is left out: {failure}", file=sys.stderr, flush=True)
-    return rows
+            print(f" is left out: {failure}", flush=True)
 
 
 # ---- Goals --------------------------------------------------------------------------------------------------------------------
@@ -178,14 +215,44 @@ def verdicts_of(rows):
     return "\n".join(lines)
 
 
-def write_results(folder, results, options):
+def times_of(seconds):
+    told = [f"{METHODS[name][0] if name in METHODS else name} {took:.0f}" for name, took in seconds.items()]
+    return "Seconds to render and measure: " + ", ".join(told) + "."
+
+
+def readme_table(results):
+    """The sum of it: what linking has beside one sample, MSAA 8 and TAA, in few columns."""
+    shown = [m for m in ("one", "taa", "msaa8", "link", "link-coverage", "link-taa") if any(m in rows for rows in results.values())]
+    lines = [markdown_row(["hair pixels", *(METHODS[m][0] for m in shown)]), markdown_row(["---"] * (len(shown) + 1))]
+    for subject, rows in results.items():
+        for key in ("mse", "flip", "psnr_flyaway", "continuity"):
+            head, text = COLUMNS[key]
+            cells = [text(rows[m][key]) if m in rows and rows[m][key] is not None else "–" for m in shown]
+            lines.append(markdown_row([f"{subject}: {head}", *cells]))
+    met = {m: [g[1] for rows in results.values() if m in rows for g in goals(rows, m) if g[1] is not None] for m in shown if m in LINKED}
+    told = "; ".join(f"{METHODS[m][0]} {sum(found)} of {len(found)}" for m, found in met.items())
+    return "\n".join(lines) + f"\n\nGoals that are met: {told}.\n"
+
+
+def write_readme(results, options):
+    """Puts the table between the two marks of README.md."""
+    told = (f"One sample a pixel made whole, {options.size.replace('x', '×')}, {options.strands} strands of 64 points and Sintel's, against "
+            f"{options.reference_spp} samples (`tools/quality_table.py`):\n\n{readme_table(results)}")
+    readme = ROOT / "README.md"
+    text, count = re.subn(r"(<!-- link quality -->\n).*?(<!-- /link quality -->)", lambda m: m[1] + told + m[2], readme.read_text(), flags=re.S)
+    if count != 1:
+        raise SystemExit("README.md lacks the marks <!-- link quality --> and <!-- /link quality -->")
+    readme.write_text(text)
+
+
+def write_results(folder, results, seconds, options):
     samples = "references as given" if options.references else f"references of {options.reference_spp} samples"
     text = [f"# Strand linking beside other methods\n\n{options.size.replace('x', ' × ')} pixels, {samples}; hair pixels; MSE scene-linear, PSNR and FLIP "
             "as displayed, over the dark background; light: mean on hair pixels against the reference's."]
     for name, rows in results.items():
-        text += [f"## {name}", table_of(rows), verdicts_of(rows)]
+        text += [f"## {name}", table_of(rows), verdicts_of(rows), times_of(seconds[name])]
     (folder / "quality.md").write_text("\n\n".join(t for t in text if t) + "\n")
-    told = {name: {"methods": rows, "goals": {m: [{"goal": g, "met": met, "measured": what} for g, met, what in goals(rows, m)]
+    told = {name: {"seconds": seconds[name], "methods": rows, "goals": {m: [{"goal": g, "met": met, "measured": what} for g, met, what in goals(rows, m)]
                                               for m in LINKED if m in rows}} for name, rows in results.items()}
     settings = {"size": options.size, "strands": options.strands, "reference_spp": None if options.references else options.reference_spp}
     (folder / "quality.json").write_text(json.dumps({"settings": settings, "subjects": told}, indent=1) + "\n")
@@ -198,6 +265,8 @@ def parse_options():
     parser.add_argument("--size", metavar="WxH", help="of the pictures (1920x1080; 160x90 with --quick)")
     parser.add_argument("--strands", type=int, help="of the grown grooms (50000; 400 with --quick)")
     parser.add_argument("--reference-spp", type=int, help="samples of the references, each shaded (1024; 16 with --quick)")
+    parser.add_argument("--cache", metavar="FOLDER", help="where references are kept (OUT/references)")
+    parser.add_argument("--readme", action="store_true", help="put the sum of it into README.md")
     parser.add_argument("--references", metavar="FOLDER", help="take FOLDER/NAME.exr instead, rendered with --background transparent")
     parser.add_argument("--only", default="", metavar="REGEX", help="grooms whose names match: straight50k, curly50k, ponytail, sintel")
     parser.add_argument("--methods", default=",".join(METHODS), metavar="A,B", help="which to measure (%(default)s)")
@@ -207,6 +276,7 @@ def parse_options():
     options.strands = options.strands or (400 if options.quick else 50000)
     options.reference_spp = options.reference_spp or (16 if options.quick else 1024)
     options.methods = options.methods.split(",")
+    options.cache = options.cache or str(pathlib.Path(options.out) / "references")
     for name in options.methods:
         if name not in METHODS:
             parser.error(f"no method {name}; there are {', '.join(METHODS)}")
@@ -223,13 +293,14 @@ def main():
         raise SystemExit(f"no groom matches {options.only}")
     folder = pathlib.Path(options.out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    shop, results = Workshop(pelage, folder), {}
+    shop, results = Workshop(pelage, folder), Results(folder, options)
     for subject in chosen:
         try:
-            results[subject.name] = measure_subject(shop, subject, options.methods, options)
+            measure_subject(shop, subject, options, results)
         except Failure as failure:
             raise SystemExit(f"{subject.name}: pelage failed: {failure}")
-        write_results(folder, results, options)
+    if options.readme:
+        write_readme(results.rows, options)
     print(f"\n{(folder / 'quality.md').read_text()}\nThe same stands in {folder / 'quality.md'}; for machines: {folder / 'quality.json'}")
 
 

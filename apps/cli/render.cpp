@@ -146,12 +146,20 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->check(CLI::Range(1, 4096));
   verb.add_option("--orbit", o.orbit, "Degrees that the camera goes around the target from picture to picture")
       ->check(CLI::Range(-360.0, 360.0));
-  verb.add_option("--view", o.view, "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo or motion")
+  verb.add_option("--view", o.view,
+                  "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo, motion; of strand linking: "
+                  "linked (pixels that were hit and filled), alpha (opacity before the filter)")
       ->type_name("NAME");
-  verb.add_option("--alpha", o.alpha, "Opacity from covered samples or exact area: samples, analytic; of link: count, coverage")
+  verb.add_option("--alpha", o.alpha,
+                  "Opacity from covered samples or exact area: samples, analytic; of link: count, coverage or none")
       ->type_name("NAME");
   verb.add_option("--kernel-size", o.kernel_size, "link: half of the filter's length over the size of the hair; 0.006")
       ->check(CLI::Range(0.0, 1.0));
+  verb.add_option("--depth-sigma", o.depth_sigma, "link: of strands that fit, those so far behind count less; 0: not at all")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("PIXELS");
+  verb.add_flag("--no-linking", o.no_linking, "link: missed pixels of strands stay empty");
+  verb.add_flag("--no-filter", o.no_filter, "link: hair is not smoothed along its strands");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')
       ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw", "motion"}));

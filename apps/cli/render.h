@@ -21,13 +21,13 @@ struct RenderOptions {
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
   std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment;
-  std::optional<float> kernel_size;
+  std::optional<float> kernel_size, depth_sigma;
   std::optional<int> samples, frames, subdivisions, opacity_map_size;
   std::optional<float> exposure, fov, turn, orbit, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;
-  bool no_head = false, full_float = false, stats = false, json = false, schema = false;
+  bool no_head = false, full_float = false, no_linking = false, no_filter = false, stats = false, json = false, schema = false;
 };
 
 /// Adds the options that say what stands in a scene, and from where it is seen.

@@ -136,11 +136,15 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
     throw UsageError("--spp", std::to_string(s.samples), "no square of visibility pixels",
                      "use 1, 4, 9 or 16 with --method link");
   if (o.alpha && is_linking(s.method))
-    s.link.alpha = by_name<LinkAlpha>("--alpha", *o.alpha, {{"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}});
+    s.link.alpha = by_name<LinkAlpha>(
+        "--alpha", *o.alpha, {{"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}, {"none", LinkAlpha::kNone}});
   else if (o.alpha)
     s.alpha =
         by_name<AlphaSource>("--alpha", *o.alpha, {{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}});
   if (o.kernel_size) s.link.kernel_size = *o.kernel_size;
+  if (o.depth_sigma) s.link.depth_sigma = *o.depth_sigma;
+  if (o.no_linking) s.link.link = false;
+  if (o.no_filter) s.link.filter = false;
   if (o.view)
     s.view = by_name<View>("--view", *o.view,
                            {{"beauty", View::kBeauty},
@@ -151,7 +155,9 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
                             {"coverage", View::kCoverage},
                             {"overdraw", View::kOverdraw},
                             {"albedo", View::kAlbedo},
-                            {"motion", View::kMotion}});
+                            {"motion", View::kMotion},
+                            {"linked", View::kLinked},
+                            {"alpha", View::kLinkAlpha}});
   if (o.tone_map)
     s.tone_map = by_name<ToneMap>("--tone-map", *o.tone_map, {{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
   if (o.exposure) s.exposure = *o.exposure;

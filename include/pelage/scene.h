@@ -98,7 +98,19 @@ struct MeshInstance {
 };
 
 /// What the picture shows.
-enum class View { kBeauty, kStrandId, kU, kTangent, kDepth, kCoverage, kOverdraw, kAlbedo, kMotion };
+enum class View {
+  kBeauty,
+  kStrandId,
+  kU,
+  kTangent,
+  kDepth,
+  kCoverage,
+  kOverdraw,
+  kAlbedo,
+  kMotion,
+  kLinked,     ///< pixels that strand linking starts from (1) and those that it has filled (2)
+  kLinkAlpha,  ///< opacity of hair after linking and alpha fix, before the filter
+};
 
 /// Where a pixel's opacity comes from.
 enum class AlphaSource {
@@ -124,6 +136,7 @@ enum class Method {
 enum class LinkAlpha {
   kCount,     ///< hit over hit and filled pixels of each segment; Huang 2025, eq. 8
   kCoverage,  ///< exact area of the strands, by another layer of raster: better, and about as long again as raster
+  kNone,      ///< none: linked strands are as opaque as others, to see what alpha fix is worth
 };
 
 /// Strand linking and its filter, of Method::kLink: the symbols of Huang 2025 (docs/methods.md).

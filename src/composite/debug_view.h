@@ -14,7 +14,7 @@ struct DebugView {
   Image display;  ///< sRGB-encoded, 0…1
 };
 
-/// `what` is any View but kBeauty. Needs GBuffer::center, for kCoverage the analytic layer, for kOverdraw `overdraw`.
+/// `what` is any View but kBeauty, kMotion, kLinked and kLinkAlpha. Needs GBuffer::center, for kCoverage the analytic layer, for kOverdraw `overdraw`.
 /// A strand keeps its kStrandId color from every camera: it follows from the strand's id. O(pixels · log strands).
 DebugView make_debug_view(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
                           View what);

@@ -172,6 +172,10 @@ Matte fix_alpha(StrandLayer& layer, const Links& links, LinkAlpha alpha, int bor
     average_coverage(layer, matte);
     return matte;
   }
+  if (alpha == LinkAlpha::kNone) {
+    resolve_hair(layer, matte, [](std::size_t, Vec3&) { return 1.f; });
+    return matte;
+  }
   SegmentAlpha segments(layer, links, table_size);
   segments.count(stats);
   resolve_hair(layer, matte, [&](std::size_t p, Vec3& color) { return segments.alpha(p, color); });

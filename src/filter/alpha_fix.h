@@ -23,6 +23,7 @@ struct AlphaStats {
 /// the M; so the sum of α·C_hair over M ∪ N is that of the colors of M (eq. 10). Pixels of other segments keep their color,
 /// with α = 1. A segment is a primitive of the sample that its fills came from.
 /// LinkAlpha::kCoverage: α is layer.coverage; pixels keep their colors, and what has area, but no sample, none.
+/// LinkAlpha::kNone: α is 1 and pixels keep their colors.
 ///
 /// Background is not mixed in (eq. 9): the matte is laid over what is really there, after the filter. Removes fills that
 /// overflow the table from `layer`. Same bits for any number of threads. O(pixels of the layer), most of it clearing the matte.

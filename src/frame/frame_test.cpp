@@ -117,7 +117,8 @@ INSTANTIATE_TEST_SUITE_P(Views, EveryView,
                                           testing::Values(AlphaSource::kSamples, AlphaSource::kAnalytic)));
 INSTANTIATE_TEST_SUITE_P(DebugViews, EveryView,
                          testing::Combine(testing::Values(View::kStrandId, View::kU, View::kTangent, View::kDepth,
-                                                          View::kCoverage, View::kOverdraw, View::kAlbedo, View::kMotion),
+                                                          View::kCoverage, View::kOverdraw, View::kAlbedo, View::kMotion,
+                                                          View::kLinked, View::kLinkAlpha),
                                           testing::Values(AlphaSource::kSamples)));
 
 // A band of a tenth of the picture: its alpha is a tenth.
@@ -193,6 +194,28 @@ TEST(DebugViews, StrandsHaveColorsOfTheirOwn) {
     if (image.pixels[i + 3] > 0) colors.insert({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
   EXPECT_GT(colors.size(), 150u);
   EXPECT_LE(colors.size(), 300u);
+}
+
+// Alpha is M/(M+N): over the M hit and N filled pixels of all strands it adds up to the hits (Huang 2025, eq. 10).
+TEST(DebugViews, ShowWhatLinkingFillsAndItsAlpha) {
+  Scene scene = hairy_scene(101, 67);
+  const auto show = [&](View view) {
+    scene.settings.view = view;
+    return render(scene).linear;
+  };
+  const Image strands = show(View::kStrandId), linked = show(View::kLinked), alpha = show(View::kLinkAlpha);
+  double hit = 0, filled = 0, sum = 0;
+  for (std::size_t i = 0; i < linked.pixels.size(); i += 4) {
+    const float value = linked.pixels[i];
+    ASSERT_EQ(value == 1, strands.pixels[i + 3] == 1) << "hits are what one sample shows";
+    ASSERT_EQ(value > 0, alpha.pixels[i] > 0);
+    hit += value == 1, filled += value == 2, sum += static_cast<double>(alpha.pixels[i]);
+  }
+  EXPECT_GT(filled, 20);
+  EXPECT_NEAR(sum, hit, 1e-3);
+  scene.settings.link.link = false;
+  const Image input = show(View::kLinked);
+  for (std::size_t i = 0; i < input.pixels.size(); ++i) ASSERT_EQ(input.pixels[i], strands.pixels[i / 4 * 4 + 3]) << i;
 }
 
 TEST(Frame, StatsNameTheStages) {

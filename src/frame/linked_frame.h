@@ -31,4 +31,7 @@ void place_layer(const PixelMask& hair, StrandLayer& layer);
 Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderSettings& settings, Stages& stages,
                       Buffer<float>* nearest = nullptr, float color_scale = 1);
 
+/// `what`, View::kLinked or kLinkAlpha: what linking and alpha fix make of one sample a pixel, no light.
+DebugView render_link_view(const FrameInputs& inputs, View what, Stages& stages);
+
 }  // namespace pelage

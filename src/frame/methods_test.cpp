@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "frame/sample_positions.h"
 #include "raster/test_scene.h"
@@ -285,6 +286,83 @@ TEST(Link, TakesScenesWithoutHairAndTellsOfWrongSamples) {
   const Image empty = linear_of(scene, Method::kLink, 1);
   for (const float v : empty.pixels) EXPECT_TRUE(std::isfinite(v));
   for (const int samples : {2, 8, 25}) EXPECT_THROW(linear_of(scene, Method::kLink, samples), Error);
+}
+
+// From eq. 10 on: without alpha fix, linked hair is as opaque as hair that was hit, so there is more of it.
+TEST(Link, WithoutAlphaFixLinkedHairIsOpaque) {
+  Scene scene = hairy_scene();
+  scene.settings.transparent_background = true;
+  scene.settings.link.filter = false;
+  const Image fixed = linear_of(scene, Method::kLink, 1);
+  scene.settings.link.alpha = LinkAlpha::kNone;
+  const Image opaque = linear_of(scene, Method::kLink, 1);
+  std::size_t thinned = 0;
+  for (std::size_t i = 3; i < opaque.pixels.size(); i += 4) {
+    ASSERT_EQ(opaque.pixels[i], fixed.pixels[i] > 0 ? 1.f : 0.f) << "the same pixels show hair";
+    thinned += fixed.pixels[i] > 0 && fixed.pixels[i] < 1;
+  }
+  EXPECT_GT(thinned, 20u);
+}
+
+/// One strand of `points` that is seen from +z, a meter a picture.
+Scene ortho_scene(int width, int height, std::initializer_list<Vec3> points, float strand_width) {
+  Scene scene;
+  scene.settings.width = width, scene.settings.height = height;
+  scene.camera.projection = Camera::Projection::kOrthographic;
+  scene.camera.height = 1;
+  scene.grooms.emplace_back().strands = std::make_shared<StrandSet>(test::strand(points, strand_width));
+  return scene;
+}
+
+TEST(Link, OneStrandSeenEndOnIsItsOnePixel) {
+  Scene scene = ortho_scene(31, 31, {{0, 0, -0.3f}, {0, 0, 0}, {0, 0, 0.3f}}, 0.04f);
+  for (const LinkAlpha alpha : {LinkAlpha::kCount, LinkAlpha::kCoverage, LinkAlpha::kNone}) {
+    scene.settings.link.alpha = alpha;
+    const Image linked = linear_of(scene, Method::kLink, 1), input = linear_of(scene, Method::kMsaa, 1);
+    for (std::size_t i = 0; i < linked.pixels.size(); ++i) {
+      ASSERT_TRUE(std::isfinite(linked.pixels[i]));
+      if (alpha != LinkAlpha::kCoverage) EXPECT_NEAR(linked.pixels[i], input.pixels[i], 1e-5f) << i;
+    }
+  }
+}
+
+TEST(Link, StrandsBehindTheHeadStayThere) {
+  Scene scene = hairy_scene(101, 67);
+  scene.settings.shadows = false;
+  const Vec3 eye = scene.camera.eye, middle = eye + (scene.camera.target - eye) * 0.1f;
+  const Vec3 side = normalize(cross(middle - eye, Vec3(0, 1, 0))) * 9, up = normalize(cross(side, middle - eye)) * 9;
+  auto wall = std::make_shared<TriangleMesh>();
+  wall->positions = {middle - side - up, middle + side - up, middle + up};
+  wall->triangles = {{0, 1, 2}};
+  scene.meshes.emplace_back().mesh = wall;
+  const Image behind = linear_of(scene, Method::kLink, 1);
+  scene.grooms.clear();
+  EXPECT_EQ(behind.pixels, linear_of(scene, Method::kLink, 1).pixels);
+}
+
+// Where hair covers all of the picture there is nothing to link: the input, smoothed.
+TEST(Link, TakesPicturesThatAreAllHair) {
+  Scene scene = ortho_scene(23, 17, {{0, -3, 0}, {0, 0, 0}, {0, 3, 0}}, 4);
+  scene.settings.transparent_background = true;
+  scene.settings.view = View::kLinked;
+  for (const float value : render(scene).linear.pixels) ASSERT_EQ(value, 1);
+  scene.settings.view = View::kBeauty;
+  const Image linked = linear_of(scene, Method::kLink, 1), input = linear_of(scene, Method::kMsaa, 1);
+  for (std::size_t i = 3; i < linked.pixels.size(); i += 4) ASSERT_NEAR(linked.pixels[i], 1, 1e-6f);
+  scene.settings.link.filter = false;
+  EXPECT_EQ(linear_of(scene, Method::kLink, 1).pixels, input.pixels);
+}
+
+TEST(Link, TakesPicturesOfAnySize) {
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 67}, std::pair{3, 2}, std::pair{257, 89}}) {
+    Scene scene = hairy_scene(width, height);
+    for (const int samples : {1, 9}) {
+      const Image image = linear_of(scene, Method::kLink, samples);
+      ASSERT_EQ(image.width, width);
+      ASSERT_EQ(image.height, height);
+      for (const float v : image.pixels) ASSERT_TRUE(std::isfinite(v)) << width << "x" << height;
+    }
+  }
 }
 
 TEST(LinkTaa, GoesOnFromFrameToFrame) {

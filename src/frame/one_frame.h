@@ -32,7 +32,7 @@ Image render_frame(const FrameInputs& inputs, std::span<const Vec2> positions, S
 /// [h·w] camera z of what the middle of each pixel sees, strand or mesh, metres; +inf for nothing. No light.
 Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages);
 
-/// `what`, any View but kBeauty and kMotion: one sample in the middle of each pixel, no light.
+/// `what`, any View but kBeauty, kMotion, kLinked and kLinkAlpha: one sample in the middle of each pixel, no light.
 DebugView render_debug_view(const FrameInputs& inputs, View what, Stages& stages);
 
 }  // namespace pelage

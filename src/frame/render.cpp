@@ -16,6 +16,7 @@
 #include "filter/oidn.h"
 #include "frame/camera_view.h"
 #include "frame/check_settings.h"
+#include "frame/linked_frame.h"
 #include "frame/methods.h"
 #include "frame/one_frame.h"
 #include "frame/sample_positions.h"
@@ -70,6 +71,16 @@ DebugView render_motion_view(const FrameInputs& inputs, Stages& stages) {
   return view;
 }
 
+/// Any view but beauty.
+DebugView render_unlit_view(const FrameInputs& inputs, Stages& stages) {
+  switch (const View what = inputs.scene.settings.view) {
+    case View::kMotion: return render_motion_view(inputs, stages);
+    case View::kLinked:
+    case View::kLinkAlpha: return render_link_view(inputs, what, stages);
+    default: return render_debug_view(inputs, what, stages);
+  }
+}
+
 }  // namespace
 
 struct PictureSequence::State {
@@ -111,8 +122,7 @@ RenderResult PictureSequence::next(const Camera& camera, const Progress& progres
     Beauty picture = render_beauty(inputs, state_->method, stages);
     result.linear = std::move(picture.linear), result.display = std::move(picture.display);
   } else {
-    DebugView debug =
-        settings.view == View::kMotion ? render_motion_view(inputs, stages) : render_debug_view(inputs, settings.view, stages);
+    DebugView debug = render_unlit_view(inputs, stages);
     result.linear = std::move(debug.data), result.display = std::move(debug.display);
   }
   scene.previous_camera = camera;

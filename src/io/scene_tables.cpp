@@ -233,13 +233,14 @@ const Fields<GroomText>& groom_fields() {
 
 const Fields<LinkSettings>& link_fields() {
   using L = LinkSettings;
-  static const Names<LinkAlpha> alphas{{"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}};
+  static const Names<LinkAlpha> alphas{
+      {"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}, {"none", LinkAlpha::kNone}};
   static const Fields<L> table{
       boolean_field("link", "Whether missed pixels of strands are filled", &L::link),
       number_field("alignment", "How well a strand has to fit an empty pixel", &L::alignment, 0, 1),
       number_field("sigma", "Pixels within which strands are looked for", &L::sigma, 0.1, 10),
       number_field("depth_sigma", "Pixels of depth by which strands behind count less; 0: not at all", &L::depth_sigma, 0, 1e6),
-      choice_field("alpha", "Opacity of linked strands: hit over all pixels, or exact area", &L::alpha, alphas),
+      choice_field("alpha", "Opacity of linked strands: hit over all pixels, exact area, or none", &L::alpha, alphas),
       boolean_field("filter", "Whether hair is smoothed along its strands", &L::filter),
       number_field("kernel_size", "Half of the kernel's major axis, over the size of the hair", &L::kernel_size, 0, 1),
       number_field("aspect", "Minor over major axis of the kernel", &L::aspect, 0, 1),
@@ -268,7 +269,8 @@ const Fields<RenderSettings>& settings_fields() {
   static const Names<AlphaSource> alphas{{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}};
   static const Names<View> views{{"beauty", View::kBeauty},     {"strand-id", View::kStrandId}, {"u", View::kU},
                                  {"tangent", View::kTangent},   {"depth", View::kDepth},        {"coverage", View::kCoverage},
-                                 {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo},      {"motion", View::kMotion}};
+                                 {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo},      {"motion", View::kMotion},
+                                 {"linked", View::kLinked},     {"alpha", View::kLinkAlpha}};
   static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};
   static const Fields<S> table{
       integer_field("width", "Pixels", &S::width, 1, 16384),
