@@ -155,9 +155,10 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->type_name("NAME");
   verb.add_option("--kernel-size", o.kernel_size, "link: half of the filter's length over the size of the hair; 0.006")
       ->check(CLI::Range(0.0, 1.0));
-  verb.add_option("--depth-sigma", o.depth_sigma, "link: of strands that fit, those so far behind count less; 0: not at all")
+  verb.add_option("--depth-sigma", o.depth_sigma,
+                  "link: of strands that fit, those this share of the distance behind the nearest count less; 0: not at all")
       ->check(CLI::Range(0.0, 1e6))
-      ->type_name("PIXELS");
+      ->type_name("SHARE");
   verb.add_flag("--no-linking", o.no_linking, "link: missed pixels of strands stay empty");
   verb.add_flag("--no-filter", o.no_filter, "link: hair is not smoothed along its strands");
   verb.add_option("--layers", o.layers, "More channels of EXR output")

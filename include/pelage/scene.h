@@ -144,7 +144,7 @@ struct LinkSettings {
   bool link = true;           ///< false: only the filter
   float alignment = 0.5f;     ///< ε_align of eq. 5, 0…1: how well a strand has to fit an empty pixel
   float sigma = 1.41421356f;  ///< σ of eq. 4, pixels; below 1.2 no diagonal neighbor ever reaches an alignment of 0.5
-  float depth_sigma = 0;      ///< pixels of depth; > 0: of strands that fit, those farther behind count less. 0: as published
+  float depth_sigma = 0;  ///< > 0: strands that are this share of the distance behind the nearest count less. 0: as published
   LinkAlpha alpha = LinkAlpha::kCount;
   bool filter = true;               ///< false: only links and alpha fix
   float kernel_size = 0.006f;       ///< k of eq. 13: half of the kernel's major axis over the size of the hair; published: 0.01

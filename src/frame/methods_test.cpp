@@ -4,6 +4,7 @@
 #include <pelage/render.h>
 #include <pelage/runtime.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -316,6 +317,11 @@ Scene ortho_scene(int width, int height, std::initializer_list<Vec3> points, flo
 
 TEST(Link, OneStrandSeenEndOnIsItsOnePixel) {
   Scene scene = ortho_scene(31, 31, {{0, 0, -0.3f}, {0, 0, 0}, {0, 0, 0.3f}}, 0.04f);
+  scene.settings.view = View::kLinked;
+  const Image shown = render(scene).linear;
+  EXPECT_EQ(std::count(shown.pixels.begin(), shown.pixels.end(), 2.f), 0) << "nothing is filled";
+  EXPECT_GT(std::count(shown.pixels.begin(), shown.pixels.end(), 1.f), 0) << "the strand is seen";
+  scene.settings.view = View::kBeauty;
   for (const LinkAlpha alpha : {LinkAlpha::kCount, LinkAlpha::kCoverage, LinkAlpha::kNone}) {
     scene.settings.link.alpha = alpha;
     const Image linked = linear_of(scene, Method::kLink, 1), input = linear_of(scene, Method::kMsaa, 1);

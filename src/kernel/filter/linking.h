@@ -11,7 +11,7 @@ PELAGE_FN Float filter_alignment(Vec2 offset, Vec2 tangent, Float sigma) {
   return abs(dot(filter_alignment_axis(offset, sigma), tangent));
 }
 
-// How much of `alignment` is left for a strand that is `behind` (>= 0) the nearest candidate, both in pixels at its distance.
+// How much of `alignment` is left for a strand that is `behind` (>= 0) the nearest candidate, both as shares of its distance.
 PELAGE_FN Float filter_depth_continuity(Float behind, Float sigma) {
   return m_exp(Float(-0.5f) * behind * behind / (sigma * sigma));
 }
