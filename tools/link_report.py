@@ -23,7 +23,7 @@ from demo_report import ROOT, Failure, Method, Workshop, machine
 from reference_cache import ReferenceCache
 
 SAMPLES = (1, 4, 9, 16)
-DEPTHS = (0.003, 0.01, 0.03)  # σ of depth continuity, as a share of the distance to the camera
+DEPTHS = (0.01, 0.03, 0.1)  # σ of depth continuity, as a share of the distance to the camera
 STYLES = {"straight": "blond", "curly": "black", "ponytail": "red"}  # hairstyles and colors of figure 11
 
 
