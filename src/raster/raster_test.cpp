@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <set>
 
 #include "../bench/naive_raster.h"
 #include "assemble/assemble.h"
 #include "core/parallel.h"
 #include "frame/camera_view.h"
+#include "frame/draw_order.h"
 #include "raster/gbuffer.h"
 #include "raster/test_scene.h"
 #include "raster/tile_locks.h"
@@ -127,6 +129,59 @@ TEST(Raster, SampleLayersHaveTheBitsOfThePlainWayForAnyThreadCountAndInstruction
         set_isa(""), set_thread_count(0);
       }
     }
+}
+
+/// Strands that turn by any angle at every point, a few pixels long and up to a dozen wide, thick and thin in turns.
+StrandSet crumpled(int strands, int points) {
+  StrandSet set;
+  set.offsets.push_back(0);
+  for (int s = 0; s < strands; ++s) {
+    Rng rng(11, static_cast<std::uint32_t>(s));
+    const auto step = [&](float size) { return Vec3(rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f) * size; };
+    Vec3 p = step(0.3f);
+    for (int i = 0; i < points; ++i) {
+      set.points.push_back(p += step(0.02f));
+      set.widths.push_back(5e-3f * rng.uniform() * rng.uniform());
+    }
+    set.offsets.push_back(static_cast<std::uint32_t>(set.points.size()));
+  }
+  return set;
+}
+
+TEST(Raster, SamplesOfSharpBendsAndConesHaveTheBitsOfThePlainWay) {
+  const Scene scene = test::scene_of(crumpled(300, 20));
+  for (const int samples : {2, 8}) {
+    const GBuffer wanted = plain(scene, 700, 611, samples);
+    EXPECT_GT(count_covered(wanted.sample_keys), 10000u);
+    for (const std::string& isa : available_isas()) {
+      set_isa(isa);
+      expect_same(wanted, raster(scene, 700, 611, {.samples = samples}));
+    }
+    set_isa("");
+  }
+}
+
+TEST(Raster, DrawsEveryStrandOfAnOrderThatIsNotTheirs) {
+  // A field of strands side by side, numbered without regard to their places.
+  constexpr std::uint32_t kAcross = 40, kDown = 13, kCount = kAcross * kDown;
+  StrandSet set;
+  set.offsets = {0}, set.widths = {2};
+  for (std::uint32_t s = 0; s < kCount; ++s) {
+    const std::uint32_t place = s * 197 % kCount;
+    const Vec3 p(6 * static_cast<float>(place % kAcross) - 118, 14 * static_cast<float>(place / kAcross) - 88, 0);
+    set.points.push_back(p), set.points.push_back(p + Vec3(0, 11, 0));
+    set.offsets.push_back(static_cast<std::uint32_t>(set.points.size()));
+  }
+  Scene scene = test::scene_of(std::move(set));
+  scene.camera = test::pixel_camera(200);
+  ASSERT_EQ(draw_order(scene.grooms[0], make_camera_view(scene.camera, 250, 200)).size(), kCount);
+  const GBuffer drawn = raster(scene, 250, 200, {.samples = 2}), wanted = plain(scene, 250, 200, 2);
+  std::set<std::uint32_t> seen;
+  for (const PixelKey key : drawn.center)
+    if (key != kEmptyPixel) seen.insert(key_id(key));
+  EXPECT_EQ(seen.size(), kCount);
+  EXPECT_TRUE(same(drawn.center, wanted.center));
+  EXPECT_TRUE(same(drawn.sample_keys, wanted.sample_keys));
 }
 
 TEST(TileLocks, OneThreadOwnsATileAtATime) {

@@ -111,39 +111,74 @@ class SampleEntry {
               asked_ = 0;  // groups, first fragment of the open one, first whose keys were not asked for
 };
 
+/// One of a band's two caps as the samples of a pixel meet it.
+template <int kSamples>
+struct CapLanes {
+  wide::Vec2 cap;
+  Float u, v;             // the point whose cap it is
+  Float shift[kSamples];  // rule (2)
+  Uints kept_if_past;     // all samples where it is the cap of a, which keeps what is past it; none where it is that of b
+};
+
 /// What samples add to the terms of their pixel's center, on the segments of a bunch.
 template <int kSamples>
 struct SampleLanes {
-  Float along[kSamples];                     // the major axis
-  Float shift[kSamples], growth[kSamples];   // rule (1)
-  Float past_a[kSamples], past_b[kSamples];  // rule (2)
-  Float above, below;                        // how far beyond the band's edges pixels have samples inside
-  Float least_a, most_b;
+  Float shift[kSamples], growth[kSamples];  // rule (1)
   Uints bit[kSamples];
+  Float above, below;               // how far beyond the band's edges pixels have samples inside
+  CapLanes<kSamples> lower, upper;  // at the ends with the smaller and with the larger column
 };
+
+/// How far a position in the pixel is off its center, along the major and along the minor axis.
+HWY_INLINE wide::Vec2 center_offset(const wide::RasterBand& band, Vec2 position) {
+  const Float x(position.x - 0.5f), y(position.y - 0.5f);
+  return {select(band.x_major, x, y), select(band.x_major, y, x)};
+}
+
+template <int kSamples>
+HWY_INLINE void place_cap(const wide::RasterBand& band, Mask is_a, CapLanes<kSamples>& c) {
+  c.cap = select(is_a, band.cap_a, band.cap_b);
+  c.u = select(is_a, band.u, band.end_u), c.v = select(is_a, band.v, band.end_v);
+  c.kept_if_past = hn::IfThenElseZero(hn::RebindMask(kUint, is_a.m), hn::Set(kUint, (1u << kSamples) - 1));
+}
 
 template <int kSamples>
 HWY_INLINE void place_samples(const wide::RasterBand& band, SampleLanes<kSamples>& o) {
+  const Mask forward = band.end_u > band.u;
+  place_cap(band, forward, o.lower);
+  place_cap(band, !forward, o.upper);
   const auto positions = sample_positions(kSamples);
   Float highest_shift, lowest_shift, most_growth;
   for (std::size_t i = 0; i < kSamples; ++i) {
-    const Float x(positions[i].x - 0.5f), y(positions[i].y - 0.5f);
-    const Float along = select(band.x_major, x, y), across = select(band.x_major, y, x);
-    o.along[i] = along;
+    const wide::Vec2 offset = center_offset(band, positions[i]);
     o.bit[i] = hn::Set(kUint, 1u << i);
-    o.shift[i] = wide::raster_sample_shift(band, along, across);
-    o.growth[i] = wide::raster_sample_growth(band, along);
-    o.past_a[i] = wide::raster_cap_shift(band.cap_a, along, across);
-    o.past_b[i] = wide::raster_cap_shift(band.cap_b, along, across);
+    o.shift[i] = wide::raster_sample_shift(band, offset.x, offset.y);
+    o.growth[i] = wide::raster_sample_growth(band, offset.x);
+    o.lower.shift[i] = wide::raster_cap_shift(o.lower.cap, offset.x, offset.y);
+    o.upper.shift[i] = wide::raster_cap_shift(o.upper.cap, offset.x, offset.y);
     highest_shift = i == 0 ? o.shift[i] : max(highest_shift, o.shift[i]);
     lowest_shift = i == 0 ? o.shift[i] : min(lowest_shift, o.shift[i]);
     most_growth = i == 0 ? o.growth[i] : max(most_growth, o.growth[i]);
-    o.least_a = i == 0 ? o.past_a[i] : min(o.least_a, o.past_a[i]);
-    o.most_b = i == 0 ? o.past_b[i] : max(o.most_b, o.past_b[i]);
   }
   constexpr float kRoundings = 0.02f;
   o.above = most_growth - lowest_shift + Float(kRoundings - 0.5f);
   o.below = most_growth + highest_shift + Float(kRoundings + 0.5f);
+}
+
+/// Lanes of which rule (3) may cut off what the caps keep. At distance d beyond its point a cap c keeps nothing of the band
+/// where (c.x + m c.y) d > |c.y| (H + |dh/du| d). What holds at one distance holds farther out; rule (3) begins at `limit`.
+template <int kSamples>
+HWY_INLINE Mask cut_by_ends(const wide::RasterBand& band, const SampleLanes<kSamples>& o) {
+  const Float half = max(band.half, wide::raster_band_half(band, band.end_u - band.u));
+  const Float sign = select(band.end_u > band.u, Float(1.0f), Float(-1.0f));
+  const auto cut = [&](const CapLanes<kSamples>& c, Float limit) {
+    constexpr float kRoundings = 0.005f;
+    const Float along = sign * (c.cap.x + band.slope * c.cap.y);
+    const Float needed =
+        abs(c.cap.y) * (half + abs(band.half_slope) * limit) + (abs(c.cap.x) + abs(c.cap.y)) * Float(kRoundings);
+    return !(along * limit >= needed);
+  };
+  return cut(o.lower, o.lower.u - band.first) || cut(o.upper, band.last - o.upper.u);
 }
 
 HWY_INLINE Uints with_bit(Uints mask, Mask m, Uints bit) {
@@ -151,89 +186,94 @@ HWY_INLINE Uints with_bit(Uints mask, Mask m, Uints bit) {
 }
 HWY_INLINE Mask nonzero(Uints mask) { return {hn::RebindMask(kFloat, hn::Ne(mask, hn::Zero(kUint)))}; }
 
-/// Rows that the lanes of a bunch have visited.
-struct VisitedRows {
-  Float lowest, highest;
-  HWY_INLINE VisitedRows() : lowest(1.0e9f), highest(-1.0f) {}
-  HWY_INLINE void add(Mask m, Float from, Float to) {
-    lowest = select(m, min(lowest, from), lowest);
-    highest = select(m, max(highest, to), highest);
+/// The pixels of which a bunch may cover samples; x1 < 0 where there are none.
+template <int kSamples>
+HWY_INLINE PixelBounds reached_pixels(const SegmentLanes& w, const SampleLanes<kSamples>& o) {
+  // Edges are straight, so the outermost rows are those of the first or of the last column. One row more is for roundings.
+  Float lowest(1.0e9f), highest(-1.0f);
+  for (const Float column : {w.column, w.last}) {
+    const Float s = column + Float(0.5f) - w.band.u;
+    const Float center = wide::raster_band_center(w.band, s), half = wide::raster_band_half(w.band, s);
+    lowest = min(lowest, center - (half + o.below));
+    highest = max(highest, center + (half + o.above));
   }
-  /// The pixels of these rows in all columns of the bunch.
-  PixelBounds rect(const SegmentLanes& w) const {
-    const Mask any_row = highest >= Float(0.0f);
-    const auto least = [&](Float f) {
-      return static_cast<int>(hn::GetLane(hn::MinOfLanes(kFloat, select(any_row, f, Float(1.0e9f)).v)));
-    };
-    const auto most = [&](Float f) {
-      return static_cast<int>(hn::GetLane(hn::MaxOfLanes(kFloat, select(any_row, f, Float(-1.0f)).v)));
-    };
-    const Mask x = w.band.x_major;
-    return {least(select(x, w.column, lowest)), most(select(x, w.last, highest)), least(select(x, lowest, w.column)),
-            most(select(x, highest, w.last))};
-  }
-};
+  lowest = max(floor(lowest) - Float(1.0f), Float(0.0f));
+  highest = min(ceil(highest) + Float(1.0f), w.rows - Float(1.0f));
+  const Mask x = w.band.x_major, drawn = w.column <= w.last && lowest <= highest;
+  const auto least = [&](Float f) {
+    return static_cast<int>(hn::GetLane(hn::MinOfLanes(kFloat, select(drawn, f, Float(1.0e9f)).v)));
+  };
+  const auto most = [&](Float f) {
+    return static_cast<int>(hn::GetLane(hn::MaxOfLanes(kFloat, select(drawn, f, Float(-1.0f)).v)));
+  };
+  return {least(select(x, w.column, lowest)), most(select(x, w.last, highest)), least(select(x, lowest, w.column)),
+          most(select(x, highest, w.last))};
+}
 
 template <int kSamples>
-HWY_NOINLINE void make_room(const SegmentLanes& w, const VisitedRows& visited, SampleEntry<kSamples>& entry) {
-  entry.close_group(visited.rect(w));
+HWY_NOINLINE void make_room(const PixelBounds& reached, SampleEntry<kSamples>& entry) {
+  entry.close_group(reached);
   entry.flush();
 }
 
-/// Takes the samples of the pixels at (u, v) that the caps of their bands cut off out of `mask`.
+/// Those samples in `mask` of the pixels at (u, v) that the cap keeps.
 template <int kSamples>
-HWY_INLINE Uints cut_by_caps(const wide::RasterBand& band, const SampleLanes<kSamples>& o, Float u, Float v, Uints mask) {
-  const Mask some = nonzero(mask);
-  const Float side_a = wide::raster_cap_side(band.cap_a, u, v, band.u, band.v);
-  const Float side_b = wide::raster_cap_side(band.cap_b, u, v, band.end_u, band.end_v);
-  // Adding rounds monotonically: where the least of the samples is past the cap, all are.
-  if (wide::any(some && !wide::raster_past_cap(side_a, o.least_a))) {
-    Uints past = hn::Zero(kUint);
-    for (int i = 0; i < kSamples; ++i) past = with_bit(past, wide::raster_past_cap(side_a, o.past_a[i]), o.bit[i]);
-    mask = hn::And(mask, past);
-  }
-  if (wide::any(some && !wide::raster_before_cap(side_b, o.most_b))) {
-    Uints before = hn::Zero(kUint);
-    for (int i = 0; i < kSamples; ++i) before = with_bit(before, wide::raster_before_cap(side_b, o.past_b[i]), o.bit[i]);
-    mask = hn::And(mask, before);
-  }
-  return mask;
+HWY_INLINE Uints kept_by_cap(const CapLanes<kSamples>& c, const Uints* bit, Float u, Float v, Uints mask) {
+  const Float side = wide::raster_cap_side(c.cap, u, v, c.u, c.v);
+  Uints before = hn::Zero(kUint);
+  for (int i = 0; i < kSamples; ++i) before = with_bit(before, wide::raster_before_cap(side, c.shift[i]), bit[i]);
+  return hn::And(mask, hn::Xor(before, c.kept_if_past));
 }
 
 /// Bits of the samples in the columns around `u` that lie between the ends of their bands.
 template <int kSamples>
-HWY_INLINE Uints between_ends(const wide::RasterBand& band, const SampleLanes<kSamples>& o, Float u, Mask open) {
-  Uints inside = hn::Set(kUint, (1u << kSamples) - 1);
-  if (!wide::any(open && (u - Float(0.5f) < band.first || u + Float(0.5f) > band.last))) return inside;
-  inside = hn::Zero(kUint);
-  for (int i = 0; i < kSamples; ++i) inside = with_bit(inside, wide::raster_between_ends(band, u + o.along[i]), o.bit[i]);
+HWY_INLINE Uints between_ends(const wide::RasterBand& band, const SampleLanes<kSamples>& o, Float u) {
+  const auto positions = sample_positions(kSamples);
+  Uints inside = hn::Zero(kUint);
+  for (std::size_t i = 0; i < kSamples; ++i)
+    inside = with_bit(inside, wide::raster_between_ends(band, u + center_offset(band, positions[i]).x), o.bit[i]);
   return inside;
 }
 
-/// One column of each lane: appends the pixels with covered samples. kUncut: neither caps nor ends reach into it.
-template <int kSamples, bool kUncut>
-HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>& o, Float column, Mask on_band,
-                             FragmentBuffer& f, VisitedRows& visited, SampleEntry<kSamples>& entry) {
+/// What may cut samples off a column, besides the lateral edges: kAll are both caps and the ends.
+enum class Cuts { kNone, kLower, kUpper, kAll };
+
+/// `t`, to be read from memory where it is used. Otherwise the compiler keeps terms of samples in registers all through a
+/// loop, more than there are, and copies them to the stack and back for every column.
+template <class T>
+HWY_INLINE const T& in_memory(const T& t) {
+  const T* place = &t;
+  asm("" : "+r"(place));
+  return *place;
+}
+
+/// One column of each lane: appends the pixels with covered samples.
+template <int kSamples, Cuts kCuts>
+HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>& lanes, Float column, Mask on_band,
+                             FragmentBuffer& f, const PixelBounds& reached, SampleEntry<kSamples>& entry) {
   const wide::RasterBand& band = w.band;
   const Float u = column + Float(0.5f), s = u - band.u;
   const Float center = wide::raster_band_center(band, s), half = wide::raster_band_half(band, s);
   // Rows beyond which no sample is covered, with a margin for roundings.
-  const Float highest = min(floor(center + (half + o.above)), w.rows - Float(1.0f));
-  Float row = max(ceil(center - (half + o.below)), Float(0.0f));
+  const Float highest = min(floor(center + (half + lanes.above)), w.rows - Float(1.0f));
+  Float row = max(ceil(center - (half + lanes.below)), Float(0.0f));
   Mask open = on_band && row <= highest;
   if (!wide::any(open)) return;
-  visited.add(open, row, highest);
   const Uints pixel_depth = hn::BitCast(kUint, wide::raster_band_depth(band, s).v);
-  const Uints inside = kUncut ? hn::Zero(kUint) : between_ends(band, o, u, open);
+  const Uints inside = kCuts == Cuts::kAll ? between_ends(band, lanes, u) : hn::Zero(kUint);
   Uints pixel = pixel_in_column(w, first_in_column(w, column), row);
+  Float reach[kSamples];  // the right side of raster_sample_covered()
+  for (int i = 0; i < kSamples; ++i) reach[i] = half + lanes.growth[i];
   do {
+    const SampleLanes<kSamples>& o = in_memory(lanes);
     const Float v = row + Float(0.5f), above_center = v - center;
     Uints mask = hn::Zero(kUint);
-    for (int i = 0; i < kSamples; ++i)
-      mask = with_bit(mask, wide::raster_sample_covered(above_center, o.shift[i], half, o.growth[i]), o.bit[i]);
+    for (int i = 0; i < kSamples; ++i) mask = with_bit(mask, abs(above_center + o.shift[i]) <= reach[i], o.bit[i]);
     mask = hn::IfThenElseZero(hn::RebindMask(kUint, open.m), mask);
-    if (!kUncut) mask = cut_by_caps(band, o, u, v, hn::And(mask, inside));
-    if (entry.full()) make_room(w, visited, entry);
+    if (kCuts == Cuts::kLower || kCuts == Cuts::kAll) mask = kept_by_cap(o.lower, o.bit, u, v, mask);
+    if (kCuts == Cuts::kUpper || kCuts == Cuts::kAll) mask = kept_by_cap(o.upper, o.bit, u, v, mask);
+    if (kCuts == Cuts::kAll) mask = hn::And(mask, inside);
+    if (entry.full()) make_room(reached, entry);
     const Compressor compress(nonzero(mask));
     hn::StoreU(compress(pixel), kUint, &f.pixel[f.count]);
     hn::StoreU(compress(pixel_depth), kUint, reinterpret_cast<std::uint32_t*>(&f.depth[f.count]));
@@ -249,6 +289,30 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>&
 
 HWY_INLINE Float max_of_lanes(Float a) { return hn::MaxOfLanes(kFloat, a.v); }
 
+/// All columns of a bunch.
+template <int kSamples>
+HWY_INLINE void visit_segments(const SegmentLanes& w, const SampleLanes<kSamples>& o, FragmentBuffer& f,
+                               const PixelBounds& reached, SampleEntry<kSamples>& entry) {
+  const wide::Vec2 uncut = wide::raster_uncut_columns(w.band);
+  const Mask ends = cut_by_ends(w.band, o);
+  // Caps cut the columns at either end of a segment. So that few steps have to look at them, most at one of the two, lanes
+  // begin in step, then wait for the longest, and end in step.
+  constexpr int kHead = 2;
+  const Float body = w.column + Float(static_cast<float>(kHead));
+  const int most = static_cast<int>(hn::GetLane(max_of_lanes(w.last - body).v));
+  for (int i = -kHead; i <= most; ++i) {
+    const Float column = i < 0 ? w.column + Float(static_cast<float>(i + kHead)) : w.last - Float(static_cast<float>(most - i));
+    const Mask on_band = i < 0 ? column <= w.last : column >= body;
+    const Mask at_lower = on_band && column < uncut.x, at_upper = on_band && column > uncut.y;
+    const bool lower = wide::any(at_lower), upper = wide::any(at_upper);
+    if (!lower && !upper) visit_column<kSamples, Cuts::kNone>(w, o, column, on_band, f, reached, entry);
+    else if ((lower && upper) || wide::any(ends && (at_lower || at_upper)))
+      visit_column<kSamples, Cuts::kAll>(w, o, column, on_band, f, reached, entry);
+    else if (lower) visit_column<kSamples, Cuts::kLower>(w, o, column, on_band, f, reached, entry);
+    else visit_column<kSamples, Cuts::kUpper>(w, o, column, on_band, f, reached, entry);
+  }
+}
+
 template <int kSamples>
 void samples_of_block(const ScreenBlock& block, int width, int height, FragmentBuffer& f, TileLocks& locks, PixelKey* keys) {
   SampleEntry<kSamples> entry(width, f, locks, keys);
@@ -257,22 +321,10 @@ void samples_of_block(const ScreenBlock& block, int width, int height, FragmentB
   for (std::size_t j = 0; j + 1 < block.count; j += hn::Lanes(kUint)) {
     if (!load_segments(block, j, width, height, 0.0f, 1.0f, w)) continue;
     place_samples(w.band, o);
-    VisitedRows visited;
-    const wide::Vec2 uncut = wide::raster_uncut_columns(w.band);
-    // Caps cut the columns at either end of a segment. So that few steps have to look at them, and few branches are a
-    // surprise, lanes begin in step, then wait for the longest, and end in step.
-    constexpr int kHead = 2;
-    const Float body = w.column + Float(static_cast<float>(kHead));
-    const int most = static_cast<int>(hn::GetLane(max_of_lanes(w.last - body).v));
-    for (int i = -kHead; i <= most; ++i) {
-      const Float column =
-          i < 0 ? w.column + Float(static_cast<float>(i + kHead)) : w.last - Float(static_cast<float>(most - i));
-      const Mask on_band = i < 0 ? column <= w.last : column >= body;
-      const Mask cut = on_band && (column < uncut.x || column > uncut.y);
-      if (wide::any(cut)) visit_column<kSamples, false>(w, o, column, on_band, f, visited, entry);
-      else visit_column<kSamples, true>(w, o, column, on_band, f, visited, entry);
-    }
-    entry.close_group(visited.rect(w));
+    const PixelBounds reached = reached_pixels(w, o);
+    if (reached.x1 < 0) continue;
+    visit_segments(w, o, f, reached, entry);
+    entry.close_group(reached);
   }
   entry.flush();
 }
