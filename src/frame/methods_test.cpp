@@ -331,7 +331,9 @@ TEST(Link, OneStrandSeenEndOnFillsNothing) {
       const Image linked = linear_of(scene, Method::kLink, 1);
       for (std::size_t i = 0; i < linked.pixels.size(); ++i) {
         ASSERT_TRUE(std::isfinite(linked.pixels[i]));
-        if (alpha != LinkAlpha::kCoverage) ASSERT_NEAR(linked.pixels[i], input.pixels[i], 1e-5f) << i;
+        if (alpha != LinkAlpha::kCoverage) {
+          ASSERT_NEAR(linked.pixels[i], input.pixels[i], 1e-5f) << i;
+        }
       }
     }
   }
