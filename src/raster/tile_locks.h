@@ -1,6 +1,8 @@
 // Tiles of an image, each owned by one thread at a time.
 #pragma once
 
+#include <hwy/cache_control.h>
+
 #include <atomic>
 #include <cstddef>
 #include <memory>
@@ -36,10 +38,14 @@ class TileLocks {
  private:
   struct alignas(64) Lock {
     std::atomic<bool> taken{false};
+    // Owners need a tile for microseconds. To yield sooner would give other processes whole time slices of this thread.
     void acquire() {
-      for (int tries = 1; taken.exchange(true, std::memory_order_acquire); ++tries)
-        while (taken.load(std::memory_order_relaxed))
-          if (++tries % 64 == 0) std::this_thread::yield();
+      constexpr int kPauses = 256;
+      for (int tries = 0; taken.exchange(true, std::memory_order_acquire);)
+        while (taken.load(std::memory_order_relaxed)) {
+          hwy::Pause();
+          if (++tries % kPauses == 0) std::this_thread::yield();
+        }
     }
     void release() { taken.store(false, std::memory_order_release); }
   };
