@@ -2,10 +2,11 @@
 """Makes the report of the demo scenes with one command: hairstyles × colors × lights, and some from farther away, by every
 method that `pelage` has, against path tracing.
 
-  tools/demo_report.py [--quick] [--out out/report] [--only REGEX] [--readme]
+  tools/demo_report.py [--quick] [--dual] [--out out/report] [--only REGEX] [--readme]
 
 Pictures that the same command of the same program has made are kept, so a run that was stopped goes on where it was. At the
-end stand OUT/cases.json, OUT/page/index.html and the tables of OUT/tables.md.
+end stand OUT/cases.json, OUT/page/index.html and the tables of OUT/tables.md. --dual does another set of cases, every
+hairstyle in every color near, middle and far in front light, and adds OUT/dual.md: the error of dual scattering in each.
 """
 import argparse
 import hashlib
@@ -24,7 +25,8 @@ HAIRSTYLES = ("straight", "wavy", "curly", "afro", "ponytail")
 COLORS = {"black": {"eumelanin": 8, "pheomelanin": 0}, "brown": {"eumelanin": 1.3, "pheomelanin": 0.2},
           "blond": {"eumelanin": 0.1, "pheomelanin": 0.1}}
 LIGHTS = {"front": (25, -25), "side": (90, -20), "back": (160, -30)}  # degrees: where it turns from the view, and falls
-FAR = (3, 9)  # times the distance of the demo scene, for brown hair in front light
+DISTANCES = {"near": 1, "middle": 3, "far": 9}  # times the distance of the demo scene
+DUAL = {"raster64": "opacity maps", "dual": "counted by rays"}  # methods that scatter so, and how they know the strands on the way
 
 
 class Method:
@@ -93,11 +95,13 @@ class Case:
         return scene
 
 
-def all_cases(quick):
+def all_cases(quick, dual):
+    if dual:
+        return [Case(s, c, "front", d) for s in HAIRSTYLES for c in COLORS for d in DISTANCES.values()]
     if quick:
         return [Case(style, "brown", light, 1) for style in ("straight", "curly") for light in ("front", "back")]
     near = [Case(s, c, l, 1) for s in HAIRSTYLES for c in COLORS for l in LIGHTS]
-    return near + [Case(s, "brown", "front", d) for s in HAIRSTYLES for d in FAR]
+    return near + [Case(s, "brown", "front", d) for s in HAIRSTYLES for d in DISTANCES.values() if d > 1]
 
 
 # ---- Work that is done once ------------------------------------------------------------------------------------------------
@@ -256,6 +260,30 @@ def write_page(pelage, folder):
     return tables.split("\n\n")[0] + "\n"
 
 
+def write_dual(pelage, folder, cases):
+    """Errors of dual scattering by hairstyle, color and distance, on hair pixels. Returns the table, which is dual.md too."""
+    def errors(case, method):
+        pictures = [f"pictures/{case.name}-{name}.exr" for name in (method, "path")]
+        told = subprocess.run([pelage, "compare", *pictures, "--mask", f"masks/{case.name}.exr", "--tone-map", "aces", "--metrics", "flip,psnr",
+                               "--json"], cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout
+        return json.loads(told)
+
+    by_place = {(c.axes["hairstyle"], c.axes["color"], c.axes["distance"]): c for c in cases}
+    heads = [f"{label}, {distance}" for label in DUAL.values() for distance in DISTANCES]
+    lines = ["| FLIP (PSNR) of | " + " | ".join(heads) + " |", "|---" * (1 + len(heads)) + "|"]
+    for style, color in dict.fromkeys(place[:2] for place in by_place):
+        cells = []
+        for method in DUAL:
+            for distance in DISTANCES.values():
+                case = by_place.get((style, color, distance))
+                found = errors(case, method) if case else None
+                cells.append(f"{found['flip']:.3f} ({found['psnr']:.1f})" if found else "")
+        lines.append(f"| {style}, {color} | " + " | ".join(cells) + " |")
+    table = "\n".join(lines) + "\n"
+    (folder / "dual.md").write_text(table)
+    return table
+
+
 def write_readme(table, cases, options):
     """Puts the table, and what it was made of, between the two marks of README.md."""
     styles = ", ".join(dict.fromkeys(case.axes["hairstyle"] for case in cases))
@@ -272,6 +300,7 @@ def write_readme(table, cases, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="four cases of few strands and pixels, to see that everything works")
+    parser.add_argument("--dual", action="store_true", help="dual scattering alone, by hairstyle, color and distance")
     parser.add_argument("--out", default="out/report", help="folder of everything (%(default)s)")
     parser.add_argument("--only", default="", metavar="REGEX", help="cases whose names match, e.g. 'curly-.*-back'")
     parser.add_argument("--pelage", default=os.environ.get("PELAGE", str(ROOT / "build/release/bin/pelage")), help="program (%(default)s)")
@@ -280,6 +309,8 @@ def main():
     parser.add_argument("--samples", type=int, help="of path tracing, a pixel (256; 16 with --quick)")
     parser.add_argument("--readme", action="store_true", help="put the table of means into README.md")
     options = parser.parse_args()
+    if options.dual and options.readme:
+        parser.error("the README's table is that of the demo scenes, not of --dual")
     options.size = options.size or (96 if options.quick else 320)
     options.strands = options.strands or (1500 if options.quick else 0)
     options.samples = options.samples or (16 if options.quick else 256)
@@ -288,11 +319,11 @@ def main():
     pelage = str(pathlib.Path(options.pelage).resolve())
     if not os.access(pelage, os.X_OK):
         raise SystemExit(f"{pelage} is no program; build it first, or name it with --pelage")
-    cases = [c for c in all_cases(options.quick) if re.search(options.only, c.name)]
+    cases = [c for c in all_cases(options.quick, options.dual) if re.search(options.only, c.name)]
     if not cases:
         raise SystemExit(f"no case matches {options.only}")
     (folder / "scenes").mkdir(parents=True, exist_ok=True)
-    shop, chosen = Workshop(pelage, folder), methods(options)
+    shop, chosen = Workshop(pelage, folder), [m for m in methods(options) if not options.dual or m.name in (*DUAL, "path")]
     try:
         make_grooms(shop, cases, options.strands)
         for case in cases:
@@ -309,6 +340,8 @@ def main():
     table = write_page(pelage, folder)
     if options.readme:
         write_readme(table, cases, options)
+    if options.dual and not failures:
+        print(f"\n{write_dual(pelage, folder, cases)}")
     print(f"\n{table}\nOpen {folder / 'page/index.html'}; all tables: {folder / 'tables.md'}")
     if failures:
         print("left out: " + ", ".join(failures), file=sys.stderr)

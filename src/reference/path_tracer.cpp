@@ -91,6 +91,15 @@ struct PathTracer::State {
     float found_share = 0;  ///< of the environment's light that counts where the ray finds it
   };
 
+  /// A path on its way from the eye.
+  struct Walk {
+    Sequence& random;
+    Tally& tally;
+    Vec3 throughput{1, 1, 1};
+    Ray ray{};       ///< that left the last vertex
+    SceneHit hit{};  ///< what it met
+  };
+
   State(const Scene& scene, const PathSettings& s);
 
   Vertex vertex(const SceneHit& hit, const Ray& ray) const;
@@ -99,9 +108,11 @@ struct PathTracer::State {
   void gather(const Vertex& vertex, const LightRay& light, Vec3 throughput, int depth, Tally& tally) const;
   void gather_lights(const Vertex& vertex, std::array<float, 4> u, Vec3 throughput, int depth, Tally& tally) const;
   ScatteredRay scatter_ray(const Vertex& vertex, std::array<float, 4> u, int depth) const;
-  void transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const;
+  bool scatter(const Vertex& vertex, int depth, int max_bounces, Walk& walk) const;
+  void transport(const Vertex& first, int max_bounces, Sequence& random, Tally& tally) const;
   void gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random, Tally& tally) const;
   Vec3 color_of(const SceneHit& hit) const;
+  void see_environment(Vec3 direction, PathSample& result) const;
   PathSample sample(int x, int y, std::uint32_t index) const;
 };
 
@@ -208,7 +219,7 @@ void PathTracer::State::gather_lights(const Vertex& vertex, std::array<float, 4>
 /// Where rays toward it look for the environment too, one that scatters must tell how often it is drawn by any lobe.
 PathTracer::State::ScatteredRay PathTracer::State::scatter_ray(const Vertex& vertex, std::array<float, 4> u, int depth) const {
   if (!seek_environment) {
-    const ScatteredDirection s = scatter(vertex.bsdf, u);
+    const ScatteredDirection s = pelage::scatter(vertex.bsdf, u);
     return {s.direction, s.weight, 1};
   }
   const FiberSample s = pelage::sample(vertex.bsdf, u);
@@ -218,44 +229,46 @@ PathTracer::State::ScatteredRay PathTracer::State::scatter_ray(const Vertex& ver
   return {s.direction, s.value / s.pdf, power_heuristic(s.pdf, lights.environment().pdf(s.direction) * chance)};
 }
 
-/// All light that leaves the first vertex toward the eye.
-void PathTracer::State::transport(Vertex vertex, int max_bounces, Sequence& random, Tally& tally) const {
+/// One scattering event: adds what the lights send to it and what lies open beyond it. False where the path ends.
+bool PathTracer::State::scatter(const Vertex& vertex, int depth, int max_bounces, Walk& walk) const {
   const EnvironmentSampler& environment = lights.environment();
   const bool lit = seek_environment || !lights.lights().empty();
-  Vec3 throughput(1, 1, 1);
-  for (int depth = 0; depth < max_bounces; ++depth) {
-    const bool roulette = depth >= settings.first_roulette;
-    const std::array<float, 4> u = random.next();
-    std::array<float, 4> v{};
-    if (lit || roulette) v = random.next();
-    else random.skip();
-    if (lit) gather_lights(vertex, v, throughput, depth, tally);
-    const ScatteredRay scattered = scatter_ray(vertex, u, depth);
-    throughput = throughput * scattered.weight;
-    if (!(largest(throughput) > 0)) return;
-    if (tally.result.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
-    if (roulette) {
-      const float survival = std::min(std::sqrt(largest(throughput)), 1.f);
-      if (!(v[3] < survival)) return;
-      throughput = throughput / survival;
-    }
-    const float share = environment.black() ? 0.f : scattered.found_share;
-    const bool last = depth + 1 == max_bounces;
-    if (last && !(share > 0)) return;
-    const Ray ray = vertex.ray(scattered.direction);
-    SceneHit hit;
-    bool open = false;
-    if (!last) {
-      hit = rays.intersect(ray);
-      open = hit.kind == SceneHit::Kind::kNone;
-    } else {
-      open = !settings.shadows || !rays.occluded(ray);
-    }
-    if (share > 0 && (open || !settings.shadows))
-      tally.add(throughput * environment.radiance(scattered.direction) * share, depth);
-    if (open || last) return;
-    vertex = this->vertex(hit, ray);
+  const bool roulette = depth >= settings.first_roulette;
+  const std::array<float, 4> u = walk.random.next();
+  std::array<float, 4> v{};
+  if (lit || roulette) v = walk.random.next();
+  else walk.random.skip();
+  if (lit) gather_lights(vertex, v, walk.throughput, depth, walk.tally);
+  const ScatteredRay scattered = scatter_ray(vertex, u, depth);
+  walk.throughput = walk.throughput * scattered.weight;
+  if (!(largest(walk.throughput) > 0)) return false;
+  if (walk.tally.result.split && depth == 0) walk.tally.shares = lobe_shares(vertex.bsdf, scattered.direction);
+  if (roulette) {
+    const float survival = std::min(std::sqrt(largest(walk.throughput)), 1.f);
+    if (!(v[3] < survival)) return false;
+    walk.throughput = walk.throughput / survival;
   }
+  const float share = environment.black() ? 0.f : scattered.found_share;
+  const bool last = depth + 1 == max_bounces;
+  if (last && !(share > 0)) return false;
+  walk.ray = vertex.ray(scattered.direction);
+  bool open = false;
+  if (!last) {
+    walk.hit = rays.intersect(walk.ray);
+    open = walk.hit.kind == SceneHit::Kind::kNone;
+  } else {
+    open = !settings.shadows || !rays.occluded(walk.ray);
+  }
+  if (share > 0 && (open || !settings.shadows))
+    walk.tally.add(walk.throughput * environment.radiance(scattered.direction) * share, depth);
+  return !open && !last;
+}
+
+/// All light that leaves the first vertex toward the eye.
+void PathTracer::State::transport(const Vertex& first, int max_bounces, Sequence& random, Tally& tally) const {
+  Walk walk{random, tally};
+  if (!scatter(first, 0, max_bounces, walk)) return;
+  for (int depth = 1; scatter(vertex(walk.hit, walk.ray), depth, max_bounces, walk);) ++depth;
 }
 
 /// Light that leaves a strand toward the eye by dual scattering: one ray to every light counts the strands on its way.
@@ -286,8 +299,22 @@ void PathTracer::State::gather_dual(const Vertex& vertex, const SceneHit& hit, c
   gather_one({direction, INFINITY, environment.radiance(direction) / density, density, true});
 }
 
+/// What a ray that meets nothing brings back.
+void PathTracer::State::see_environment(Vec3 direction, PathSample& result) const {
+  if (!environment_visible) return;
+  result.alpha = 1;
+  result.radiance = lights.environment().radiance(direction);
+}
+
 PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {
   PELAGE_CHECK(x >= 0 && x < view.width && y >= 0 && y < view.height);
+  PathSample result;
+  if (settings.split) result.split.emplace();
+  const bool covered = silhouette.covers(x, y);
+  if (!covered && (!environment_visible || lights.environment().uniform())) {
+    see_environment({0, 0, 1}, result);
+    return result;
+  }
   Sequence random(settings.seed,
                   static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view.width) + static_cast<std::uint32_t>(x),
                   index);
@@ -295,16 +322,12 @@ PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {
   const Vec2 in_pixel = settings.positions.empty() ? Vec2(u[0], u[1]) : settings.positions[index % settings.positions.size()];
   const Vec2 at = Vec2(static_cast<float>(x), static_cast<float>(y)) + in_pixel;
   const Ray ray = camera_ray(view, at.x, at.y);
-  const SceneHit hit = silhouette.covers(x, y) ? rays.intersect(ray) : SceneHit();
-  PathSample result;
-  if (settings.split) result.split.emplace();
-  Tally tally{result};
+  const SceneHit hit = covered ? rays.intersect(ray) : SceneHit();
   if (hit.kind == SceneHit::Kind::kNone) {
-    if (!environment_visible) return result;
-    result.alpha = 1;
-    result.radiance = lights.environment().radiance(normalize(ray.direction));
+    see_environment(normalize(ray.direction), result);
     return result;
   }
+  Tally tally{result};
   const Vertex vertex = first_vertex(hit, ray, at, result);
   if (dual && vertex.hair()) gather_dual(vertex, hit, ray, random, tally);
   else transport(vertex, dual ? 1 : settings.max_bounces, random, tally);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "core/rng.h"
 #include "kernel/scalar.h"
@@ -188,6 +190,25 @@ TEST(Dual, AveragedAzimuthalLobesWithinTheirBound) {
   std::printf("averaged azimuthal lobes: at most %.3f of the energy misplaced\n", worst);
 }
 
+// A_B with at most `events` backward events, an odd number: what a stack of fibers sends back is R = a_b + a_f^2 R/(1 - a_b R)
+// but for its first fiber's a_b, here by powers of a_b.
+double back_energy_to_order(double a_f, double a_b, int events) {
+  std::vector<double> r(static_cast<std::size_t>(events) + 1), p = r;  // of R; of R/(1 - a_b R)
+  // p_n = r_n + a_b sum r_k p_(n-k) has one event more than both, and r_n = a_f^2 p_n asks for p_n: solved for r_n.
+  for (std::size_t n = 1; n < r.size(); n += 2) {
+    double turned = 0;
+    for (std::size_t k = 1; k + 1 < n; k += 2) turned += r[k] * p[n - 1 - k];
+    r[n] = (n == 1 ? a_b : a_f * a_f * a_b * turned) / (1 - a_f * a_f);
+    p[n] = r[n] + a_b * turned;
+  }
+  return std::accumulate(r.begin(), r.end(), 0.0) - a_b;
+}
+// The same for any number of them: the root of a_b R^2 - (1 + a_b^2 - a_f^2) R + a_b = 0.
+double back_energy_of_all(double a_f, double a_b) {
+  const double half = (1 + a_b * a_b - a_f * a_f) / 2;
+  return (half - std::sqrt(std::max(half * half - a_b * a_b, 0.0))) / a_b - a_b;
+}
+
 // The furnace of docs/derivations/dual_scattering.md: a half-space of hair under light of radiance 1 from the front
 // half circle; a strand at depth n (mean number of hairs before it) is seen with probability e^-n. The value is the
 // radiance that leaves, averaged over the front half circle (phi_i and phi_o are uniform in it: phi has the weight 1 -
@@ -195,17 +216,20 @@ TEST(Dual, AveragedAzimuthalLobesWithinTheirBound) {
 struct Furnace {
   double dual, two_flux;
 };
-Furnace half_space(float sigma_a) {
+// back: A_B of (a_f, a_b). density: d_f and d_b.
+template <class Back>
+Furnace half_space(float sigma_a, Back&& back, float density) {
   const ScatterLobes l = lobes_of({sigma_a, sigma_a, sigma_a}, 0);
   const ScatterAverages a = scatter_averages(l);
-  const ScatterBack b = scatter_back(a, l.sin_o, l.cos_o);
+  ScatterBack b = scatter_back(a, l.sin_o, l.cos_o);
+  b.a = v_splat(static_cast<float>(back(a.a_f.x, a.a_b.x)) * density / kDualDensity);
   Furnace furnace{};
   constexpr int kDepths = 60;
   for (int i = 0; i < kDepths; ++i) {
     const double seen = (i + 0.5) / kDepths;  // 1 - e^-n, uniform
     const float n = static_cast<float>(-std::log1p(-seen));
     const float v = scatter_dual_variance(n, a.v_f);
-    const float direct = scatter_dual_direct(n), through = scatter_dual_transmittance(n, a.a_f).x;
+    const float direct = scatter_dual_direct(n), through = scatter_dual_transmittance(n, a.a_f).x * density / kDualDensity;
     furnace.dual += integrate(
                         [&](float s, float c, float p) {
                           const float f =
@@ -219,6 +243,37 @@ Furnace half_space(float sigma_a) {
   const double k = 1 - a.a_f.x, s = a.a_b.x;
   furnace.two_flux = (k - std::sqrt(std::max(k * k - s * s, 0.0))) / s;
   return furnace;
+}
+Furnace half_space(float sigma_a) { return half_space(sigma_a, scatter_back_energy, kDualDensity); }
+
+// Where white hair's light is lost: three backward events are Zinke's whole sum, and each further pair adds less.
+TEST(Dual, BackwardEventsByOrder) {
+  for (const float a_f : {0.05f, 0.4f, 0.8f})
+    for (const float a_b : {0.02f, 0.15f}) {
+      EXPECT_NEAR(scatter_back_energy(a_f, a_b), back_energy_to_order(a_f, a_b, 3), 1e-5 * back_energy_to_order(a_f, a_b, 3));
+      EXPECT_NEAR(back_energy_of_all(a_f, a_b), back_energy_to_order(a_f, a_b, 999), 1e-9) << a_f << " " << a_b;
+    }
+  const struct {
+    const char* name;
+    float sigma_a;
+    double half_space[5];  // with 1, 3, 5, 7, any number of backward events
+  } hairs[] = {{"white", 0, {0.437, 0.517, 0.558, 0.583, 0.762}},
+               {"blond, green", scatter_melanin(0.1f, 0).y, {0.2725, 0.2892, 0.2926, 0.2934, 0.2937}},
+               {"brown, green", scatter_melanin(1.3f, 0).y, {0.0360, 0.0360, 0.0360, 0.0360, 0.0360}}};
+  for (const auto& hair : hairs) {
+    const ScatterAverages a = scatter_averages(lobes_of({hair.sigma_a, hair.sigma_a, hair.sigma_a}, 0));
+    for (int order = 0; order < 4; ++order) {
+      const auto back = [&](float a_f, float a_b) { return back_energy_to_order(a_f, a_b, 2 * order + 1); };
+      const double dual = half_space(hair.sigma_a, back, kDualDensity).dual;
+      std::printf("%s, up to %d backward events: A_B %.4f, half-space %.4f\n", hair.name, 2 * order + 1, back(a.a_f.x, a.a_b.x),
+                  dual);
+      EXPECT_NEAR(dual, hair.half_space[order], 0.002 * dual);
+    }
+    const double all = half_space(hair.sigma_a, back_energy_of_all, kDualDensity).dual;
+    std::printf("%s, any number: A_B %.4f, half-space %.4f, with d_f = d_b = 1 %.4f\n", hair.name,
+                back_energy_of_all(a.a_f.x, a.a_b.x), all, half_space(hair.sigma_a, back_energy_of_all, 1).dual);
+    EXPECT_NEAR(all, hair.half_space[4], 0.002 * all);
+  }
 }
 
 TEST(Dual, WhiteFurnaceOfAHalfSpace) {
