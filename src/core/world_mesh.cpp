@@ -23,6 +23,19 @@ Vec3 corner_blend(const std::vector<Vec3>& values, const std::array<std::uint32_
   return values[t[0]] * (1 - hit.u - hit.v) + values[t[1]] * hit.u + values[t[2]] * hit.v;
 }
 
+/// `p`, moved out of every corner's tangent plane that it lies below, as much as the corner has a share in it: Hanika 2021
+/// (references.bib: Hanika2021Terminator).
+Vec3 lifted(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& t, const RayHit& hit, Vec3 p) {
+  if (mesh.normals.empty()) return p;
+  const std::array<float, 3> shares{1 - hit.u - hit.v, hit.u, hit.v};
+  Vec3 offset;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 n = mesh.normals[t[k]];
+    offset += n * (shares[k] * std::max(dot(mesh.positions[t[k]] - p, n), 0.f));
+  }
+  return p + offset;
+}
+
 /// Bilinear, repeating look-up; texture rows run from the top, v from the bottom.
 Vec3 sample_texture(const Image& image, Vec2 uv) {
   const auto fold = [](float t) { return t - std::floor(t); };
@@ -88,6 +101,7 @@ Surface surface_at(const WorldMesh& mesh, const RayHit& hit) {
   s.normal = mesh.normals.empty() ? s.geometric_normal : normalize(corner_blend(mesh.normals, t, hit));
   // Files disagree about winding; stored normals are what their artist saw.
   if (dot(s.geometric_normal, s.normal) < 0) s.geometric_normal = -s.geometric_normal;
+  s.lifted = lifted(mesh, t, hit, s.position);
   s.color = mesh.color;
   if (mesh.texture && mesh.texture->width > 0 && !mesh.uv.empty()) {
     const Vec2 uv = mesh.uv[t[0]] * (1 - hit.u - hit.v) + mesh.uv[t[1]] * hit.u + mesh.uv[t[2]] * hit.v;

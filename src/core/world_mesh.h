@@ -16,8 +16,10 @@ namespace pelage {
 
 /// What shading needs to know of a hit.
 struct Surface {
-  Vec3 position;          ///< metres, world
-  Vec3 normal;            ///< shading normal, unit length, on the side that the triangle's winding calls outside
+  Vec3 position;  ///< metres, world
+  Vec3 lifted;    ///< metres, world; where the smooth surface is that `normal` belongs to, on its outer side: there rays
+                  ///< toward lights begin, or facets would shade each other where light grazes
+  Vec3 normal;    ///< shading normal, unit length, on the side that the triangle's winding calls outside
   Vec3 geometric_normal;  ///< the triangle's own, unit length, same side as `normal`
   Vec3 color;             ///< diffuse reflectance, linear
 };

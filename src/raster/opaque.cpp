@@ -41,7 +41,8 @@ using Coats = std::vector<CoatAlbedo>;  // [meshes]
 Shading shading_at(const Scene& scene, const Coats& coats, const MeshTracer& meshes, const Ray& ray, const RayHit& hit) {
   Shading s{meshes.surface(hit), normalize(-ray.direction), hit.distance, &scene.meshes[hit.mesh], &coats[hit.mesh]};
   if (dot(s.surface.geometric_normal, s.to_eye) < 0)
-    s.surface.normal = -s.surface.normal, s.surface.geometric_normal = -s.surface.geometric_normal;
+    s.surface.normal = -s.surface.normal, s.surface.geometric_normal = -s.surface.geometric_normal,
+    s.surface.lifted = s.surface.position;
   return s;
 }
 
@@ -50,11 +51,10 @@ bool same_shade(const Shading& a, const Shading& b) {
          std::fabs(a.depth - b.depth) < kSharedDepth * a.depth;
 }
 
+/// For light on the side of the eye.
 bool in_shadow(const MeshTracer& meshes, const Shading& s, const Illumination& light) {
-  const float side = dot(s.surface.geometric_normal, light.to_light) < 0 ? -1.f : 1.f;
   const float offset = kRayOffset * s.depth;
-  const Ray ray{s.surface.position + s.surface.geometric_normal * (side * offset), light.to_light, offset,
-                light.distance - offset};
+  const Ray ray{s.surface.lifted + s.surface.geometric_normal * offset, light.to_light, offset, light.distance - offset};
   bool hit = false;
   meshes.occluded({&ray, 1}, {&hit, 1});
   return hit;

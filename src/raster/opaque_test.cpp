@@ -11,6 +11,7 @@
 #include "frame/camera_view.h"
 #include "frame/sample_positions.h"
 #include "kernel/scalar.h"
+#include "kit/faceted_ball.h"
 #include "raster/coat.h"
 
 namespace pelage {
@@ -125,6 +126,30 @@ TEST(Opaque, CoatOfEvenLightIsTheIntegral) {
       }
     }
   EXPECT_LE(worst, kCoatAlbedoMaxAbsError);
+}
+
+// A ball of coarse facets with smooth normals: where those see the light, its facets do not keep it off.
+TEST(Opaque, FacetsOfASmoothSurfaceDoNotShadeEachOther) {
+  Scene scene;
+  scene.settings.width = scene.settings.height = 65;
+  scene.camera = kit::camera_before_ball();
+  scene.meshes.push_back(kit::faceted_ball());
+  for (const Vec3 travels : {Vec3(-1, 0, 0), Vec3(-1, -0.4f, -0.3f), Vec3(0.3f, -1, 0.2f)}) {
+    const LightRig rig = rig_of(directional(travels));
+    scene.settings.shadows = true;
+    const OpaqueLayer layer = trace(scene, rig);
+    scene.settings.shadows = false;
+    const OpaqueLayer open = trace(scene, rig);
+    int lit = 0;
+    for (std::size_t i = 0; i < layer.depth.size(); ++i) {
+      if (layer.shade[i] == OpaqueLayer::kNone) continue;
+      const float expected = opaque_color(open, i).x;
+      if (expected < 0.05f) continue;
+      ++lit;
+      EXPECT_EQ(opaque_color(layer, i).x, expected) << i;
+    }
+    EXPECT_GT(lit, 500);
+  }
 }
 
 TEST(Opaque, MeshesShadeEachOther) {

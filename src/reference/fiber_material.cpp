@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace pelage {
 
@@ -10,12 +11,20 @@ using namespace kernel;
 namespace {
 
 constexpr float kLeastCosine = 1e-4f;  ///< as scatter_prepare_marschner() has it
-constexpr float kOverFourPi = 0.0795774715459477f;
+
+/// 1/(4π e^−κ I₀(κ)): I₀ is a mean over the circle, which evenly spaced points give to all digits once they resolve its peak.
+float exact_norm(float kappa) {
+  const int points = 32 + static_cast<int>(8 * std::sqrt(kappa));
+  double sum = 0;
+  for (int i = 0; i < points; ++i)
+    sum += std::exp(static_cast<double>(kappa) * (std::cos(std::numbers::pi * (i + 0.5) / points) - 1));
+  return static_cast<float>(points / (4 * std::numbers::pi * sum));
+}
 
 }  // namespace
 
 ScatterPair completed(const ScatterPair& p) {
-  return {p.kappa, p.cos_mu, std::sqrt(std::max(1 - p.cos_mu * p.cos_mu, 0.f)), kOverFourPi / scatter_i0e(p.kappa)};
+  return {p.kappa, p.cos_mu, std::sqrt(std::max(1 - p.cos_mu * p.cos_mu, 0.f)), p.norm};
 }
 
 MarschnerTable::MarschnerTable(const ScatterFiber& f)
@@ -25,7 +34,8 @@ MarschnerTable::MarschnerTable(const ScatterFiber& f)
     const float cos_o = kLeastCosine + (1 - kLeastCosine) * (static_cast<float>(i) / kCells);
     const ScatterLobes l = scatter_prepare_marschner(f, std::sqrt(1 - cos_o * cos_o), cos_o);
     rows_.push_back({l.a_r, l.a_tt.x, l.a_tt.y, l.a_tt.z, l.a_trt.x, l.a_trt.y, l.a_trt.z, l.a_rest.x, l.a_rest.y, l.a_rest.z,
-                     l.n_tt.kappa, l.n_tt.cos_mu, l.n_trt.kappa, l.n_trt.cos_mu, 0, 0});
+                     l.n_tt.kappa, l.n_tt.cos_mu, l.n_trt.kappa, l.n_trt.cos_mu, exact_norm(l.n_tt.kappa),
+                     exact_norm(l.n_trt.kappa)});
   }
 }
 
@@ -42,6 +52,7 @@ ScatterLobes MarschnerTable::lobes(float sin_o, float cos_o_raw) const {
   l.r = r_.seen_from(sin_o, cos_o), l.tt = tt_.seen_from(sin_o, cos_o), l.trt = trt_.seen_from(sin_o, cos_o);
   l.a_r = v[0], l.a_tt = {v[1], v[2], v[3]}, l.a_trt = {v[4], v[5], v[6]}, l.a_rest = {v[7], v[8], v[9]};
   l.n_tt.kappa = v[10], l.n_tt.cos_mu = v[11], l.n_trt.kappa = v[12], l.n_trt.cos_mu = v[13];
+  l.n_tt.norm = v[14], l.n_trt.norm = v[15];
   return l;
 }
 

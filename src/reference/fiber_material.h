@@ -14,7 +14,7 @@ namespace pelage {
 /// elsewhere in azimuth. That is largest where the two lobes of a pair meet, which they do like a root.
 inline constexpr float kMarschnerTableMaxAbsError = 1e-4f, kMarschnerTableMaxMisplaced = 2e-3f;
 
-/// A pair of azimuthal lobes from what tells it apart, kappa and cos_mu.
+/// A pair of azimuthal lobes from kappa, cos_mu and norm.
 kernel::ScatterPair completed(const kernel::ScatterPair& pair);
 
 /// A longitudinal lobe that waits for θ_o: scatter_cone() without what does not depend on it.
@@ -44,12 +44,13 @@ class MarschnerTable {
   explicit MarschnerTable(const kernel::ScatterFiber& fiber);
 
   bool empty() const { return rows_.empty(); }
-  /// Of the pairs only kappa and cos_mu.
+  /// Of the pairs kappa, cos_mu and norm: that of the exact Bessel function, because each of a path's many events in white hair
+  /// multiplies what is wrong with it.
   kernel::ScatterLobes lobes(float sin_o, float cos_o) const;
 
  private:
   static constexpr std::size_t kCells = 512;
-  using Row = std::array<float, 16>;  ///< energies by channel, then concentration and cosine of both pairs
+  using Row = std::array<float, 16>;  ///< energies by channel, then concentration and cosine of both pairs, and their norms
 
   kernel::ScatterLobes fixed_{};  ///< what every θ_o has in common
   ConeShape r_, tt_, trt_;
@@ -67,7 +68,7 @@ class FiberMaterial {
   const HairMaterial& material() const { return material_; }
   /// `strand_color` as for make_fiber().
   kernel::ScatterFiber fiber(Vec3 strand_color) const { return one_color() ? fiber_ : make_fiber(material_, strand_color); }
-  /// scatter_prepare_marschner(), or the same from the table; of the pairs only kappa and cos_mu.
+  /// scatter_prepare_marschner(), or the same from the table; of the pairs kappa, cos_mu and norm.
   kernel::ScatterLobes marschner(Vec3 strand_color, float sin_o, float cos_o) const;
   /// scatter_prepare_chiang().
   kernel::ScatterNear chiang(Vec3 strand_color, float sin_o, float cos_o, float h) const;

@@ -123,7 +123,7 @@ struct Marschner {
     if (lobe != 2) lobes.a_trt = kNone;
     if (lobe != 3) lobes.a_rest = kNone;
   }
-  ScatterLobes lobes;  ///< of the pairs only kappa and cos_mu
+  ScatterLobes lobes;  ///< of the pairs kappa, cos_mu and norm
   ScatterChoice choice = scatter_choice_of(lobes);
 };
 

@@ -152,10 +152,11 @@ Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
         place.axis, place.tangent, {}, place.radius, FiberBsdf(fibers[hit.object], color_of(hit), place.tangent, to_eye, h)};
   }
   Surface s = rays.surface(hit);
-  if (dot(s.geometric_normal, to_eye) < 0) s.normal = -s.normal, s.geometric_normal = -s.geometric_normal;
+  if (dot(s.geometric_normal, to_eye) < 0)
+    s.normal = -s.normal, s.geometric_normal = -s.geometric_normal, s.lifted = s.position;
   const float scale = std::max({std::fabs(s.position.x), std::fabs(s.position.y), std::fabs(s.position.z), hit.distance});
   const MeshMaterial& m = mesh_materials[hit.object];
-  return {s.position,
+  return {s.lifted,
           {},
           s.geometric_normal,
           Vertex::kSurfaceOffset * scale,
@@ -168,7 +169,7 @@ Vertex PathTracer::State::first_vertex(const SceneHit& hit, const Ray& ray, Vec2
   const Vec3 to_eye = normalize(-ray.direction), met = ray.origin + ray.direction * hit.distance;
   result.alpha = 1;
   result.depth = hit.distance;
-  result.position = v.position;
+  result.position = v.hair() ? v.position : met;
   result.albedo = albedo(v.bsdf);
   result.normal = v.geometric_normal;
   if (v.hair()) {

@@ -48,9 +48,9 @@ struct Vertex {
   static constexpr float kLongestWay = 20;        ///< radii
   static constexpr float kSurfaceOffset = 2e-5f;  ///< share of the scale of the coordinates and the ray
 
-  Vec3 position;          ///< on the strand's axis, or on the mesh; metres
+  Vec3 position;          ///< on the strand's axis, or where rays leave the mesh (Surface::lifted); metres
   Vec3 tangent;           ///< of the strand
-  Vec3 geometric_normal;  ///< of the mesh
+  Vec3 geometric_normal;  ///< of the mesh, on the side that light is scattered on
   float radius = 0;       ///< of the strand, metres; or how far from the mesh rays begin
   Bsdf bsdf;
 
@@ -61,8 +61,7 @@ struct Vertex {
       const float along = dot(direction, tangent), across = std::sqrt(std::max(1 - along * along, 0.f));
       return {position, direction, radius * std::min(kBeyond / std::max(across, 1e-6f), kLongestWay), distance};
     }
-    const float side = dot(geometric_normal, direction) < 0 ? -radius : radius;
-    return {position + geometric_normal * side, direction, 0, distance};
+    return {position + geometric_normal * radius, direction, 0, distance};
   }
 };
 
