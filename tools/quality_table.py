@@ -236,8 +236,9 @@ def readme_table(results):
 
 def write_readme(results, options):
     """Puts the table between the two marks of README.md."""
-    told = (f"One sample a pixel made whole, {options.size.replace('x', '×')}, {options.strands} strands of 64 points and Sintel's, against "
-            f"{options.reference_spp} samples (`tools/quality_table.py`):\n\n{readme_table(results)}")
+    samples = "references as given" if options.references else f"references of {options.reference_spp} samples"
+    told = (f"One sample a pixel made whole beside other methods (`tools/quality_table.py --readme`), {options.size.replace('x', '×')}, grown grooms of "
+            f"{options.strands} strands, {samples}:\n\n{readme_table(results)}")
     readme = ROOT / "README.md"
     text, count = re.subn(r"(<!-- link quality -->\n).*?(<!-- /link quality -->)", lambda m: m[1] + told + m[2], readme.read_text(), flags=re.S)
     if count != 1:
