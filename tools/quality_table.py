@@ -228,7 +228,8 @@ def readme_table(results):
         for key in ("mse", "flip", "psnr_flyaway", "continuity"):
             head, text = COLUMNS[key]
             cells = [text(rows[m][key]) if m in rows and rows[m][key] is not None else "–" for m in shown]
-            lines.append(markdown_row([f"{subject}: {head}", *cells]))
+            if any(cell != "–" for cell in cells):
+                lines.append(markdown_row([f"{subject}: {head}", *cells]))
     met = {m: [g[1] for rows in results.values() if m in rows for g in goals(rows, m) if g[1] is not None] for m in shown if m in LINKED}
     told = "; ".join(f"{METHODS[m][0]} {sum(found)} of {len(found)}" for m, found in met.items())
     return "\n".join(lines) + f"\n\nGoals that are met: {told}.\n"
@@ -238,7 +239,7 @@ def write_readme(results, options):
     """Puts the table between the two marks of README.md."""
     samples = "references as given" if options.references else f"references of {options.reference_spp} samples"
     told = (f"One sample a pixel made whole beside other methods (`tools/quality_table.py --readme`), {options.size.replace('x', '×')}, grown grooms of "
-            f"{options.strands} strands, {samples}:\n\n{readme_table(results)}")
+            f"{options.strands:,} strands, {samples}:\n\n{readme_table(results)}")
     readme = ROOT / "README.md"
     text, count = re.subn(r"(<!-- link quality -->\n).*?(<!-- /link quality -->)", lambda m: m[1] + told + m[2], readme.read_text(), flags=re.S)
     if count != 1:
