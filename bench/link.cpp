@@ -53,7 +53,7 @@ struct Linkable {
   /// Links, alpha fix, filter; the layer is as before afterwards.
   Repaired repair() {
     const Links links = link_strands(layer, GroomCurves(scene, view), scene.settings.link);
-    const AnisotropicKernel kernel = kernel_for(screen_box(layer), scene.settings.link);
+    const AnisotropicKernel kernel = kernel_for(screen_box(layer), layer.side, scene.settings.link);
     AlphaStats stats;
     Matte matte = fix_alpha(layer, links, LinkAlpha::kCount, kernel.reach(), stats);
     extend_tangents(matte, layer);

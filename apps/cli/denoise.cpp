@@ -198,8 +198,13 @@ void add_filter_options(CLI::App& verb, DenoiseVerb& o) {
                   "Samples a pixel of the result: 1, 4, 9 or 16; 4: the G-buffer is twice as wide and high")
       ->check(CLI::IsMember({1, 4, 9, 16}))
       ->capture_default_str();
+  verb.add_option("--kernel-radius", o.settings.link.kernel_radius,
+                  "Half of the filter's length for opacity; colors take more the noisier they are")
+      ->check(CLI::Range(0.0, 64.0))
+      ->type_name("PIXELS")
+      ->capture_default_str();
   verb.add_option("--kernel-size,--k", o.settings.link.kernel_size,
-                  "Half of the filter's length over the size of the hair; 0: by the noise of the colors")
+                  "Half of the filter's length over the size of the hair, for all; 0: --kernel-radius")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   verb.add_option("--aspect", o.settings.link.aspect, "The filter's width over its length")

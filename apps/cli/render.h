@@ -21,7 +21,7 @@ struct RenderOptions {
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
   std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment;
-  std::optional<float> kernel_size, depth_sigma;
+  std::optional<float> kernel_size, kernel_radius, depth_sigma;
   std::optional<int> samples, frames, subdivisions, opacity_map_size;
   std::optional<float> exposure, fov, turn, orbit, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;

@@ -142,6 +142,7 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
     s.alpha =
         by_name<AlphaSource>("--alpha", *o.alpha, {{"samples", AlphaSource::kSamples}, {"analytic", AlphaSource::kAnalytic}});
   if (o.kernel_size) s.link.kernel_size = *o.kernel_size;
+  if (o.kernel_radius) s.link.kernel_radius = *o.kernel_radius;
   if (o.depth_sigma) s.link.depth_sigma = *o.depth_sigma;
   if (o.no_linking) s.link.link = false;
   if (o.no_filter) s.link.filter = false;

@@ -27,13 +27,9 @@ struct GBufferField {
 const std::vector<GBufferField>& gbuffer_fields();
 
 struct DenoiseSettings {
-  /// Its kernel_size 0, the default here, stands for kernels of a size in pixels: for opacity what is best for most hair, for color
-  /// more the noisier the samples' colors are. Another one holds for both.
-  LinkSettings link = [] {
-    LinkSettings settings;
-    settings.kernel_size = 0;
-    return settings;
-  }();
+  /// With its kernel_size 0 the filter is longer for color than for opacity, the more the noisier the samples' colors are.
+  /// Another one holds for both.
+  LinkSettings link;
   /// Visibility pixels a pixel of the result: 1, 4, 9 or 16. A G-buffer for 4 is twice as wide and high as the result.
   int samples = 1;
   /// What fields are called in the G-buffer, where not by their own name: {"position", "ViewLayer.Position"}. Its components are

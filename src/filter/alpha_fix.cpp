@@ -103,9 +103,11 @@ void resolve_pixel(const StrandLayer& layer, int x, int y, const Hair& hair, Mat
   Vec3 sum;
   Vec2 tangent;
   MeanDirection direction;
-  float alpha = 0;
+  float alpha = 0, thickness = 0, count = 0;
   layer.for_each_sample(x, y, [&](std::size_t p) {
     if (!layer.visibility[p].is_hair()) return;
+    if (!layer.thickness.empty()) thickness += layer.thickness[p];
+    count += 1;
     Vec3 color = layer.color[p];
     const float a = hair(p, color);
     sum += color * a, alpha += a;
@@ -113,7 +115,7 @@ void resolve_pixel(const StrandLayer& layer, int x, int y, const Hair& hair, Mat
     if (layer.side > 1) direction.add(tangent);
   });
   matte.color[matte.index(x, y)] = {sum.x * share, sum.y * share, sum.z * share, alpha * share};
-  matte.lie(x, y, layer.side > 1 ? direction.mean() : tangent);
+  matte.lie(x, y, layer.side > 1 ? direction.mean() : tangent, thickness / (count * static_cast<float>(layer.side)));
 }
 
 /// Matte::coverage: means over the visibility pixels of a screen pixel.

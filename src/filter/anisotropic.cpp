@@ -8,10 +8,14 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "filter/color_weights.h"
+#include "filter/kernel_field.h"
 #include "filter/kernel_taps.h"
 
 namespace pelage {
 namespace {
+
+/// r ∝ side^−0.6: what is best for four and nine samples, and in denoise for any noise (docs/derivations/linking.md).
+constexpr float kPixelsForSamples = 0.6f;
 
 /// A weighted sum of pixels, four floats at a time.
 struct PixelSum {
@@ -58,11 +62,15 @@ Vec4 weighted_mean(const Vec4* color, const float* weight, std::span<const std::
 
 }  // namespace
 
-AnisotropicKernel kernel_for(const PixelBox& hair, const LinkSettings& settings) {
+AnisotropicKernel kernel_for(const PixelBox& hair, int side, const LinkSettings& settings) {
   AnisotropicKernel k;
-  k.radius = std::min(settings.kernel_size * std::sqrt(static_cast<float>(hair.width()) * static_cast<float>(hair.height())),
-                      AnisotropicKernel::kMostRadius);
+  k.adapts = settings.kernel_size == 0;
+  const float radius =
+      k.adapts ? settings.kernel_radius * std::pow(static_cast<float>(side), -kPixelsForSamples)
+               : settings.kernel_size * std::sqrt(static_cast<float>(hair.width()) * static_cast<float>(hair.height()));
+  k.radius = std::min(radius, AnisotropicKernel::kMostRadius);
   k.aspect = settings.aspect;
+  k.sigma_along = settings.falloff, k.sigma_across = settings.falloff;
   k.sigma_distance = settings.sigma_distance, k.sigma_angle = settings.sigma_angle, k.sigma_color = settings.sigma_color;
   return k;
 }
@@ -75,15 +83,18 @@ Buffer<Vec4> filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel)
   Buffer<Vec4> out(m.color.size());
   parallel_for(static_cast<std::size_t>(m.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
     ColorWeights colors(by_color ? table.most_pairs() : 0);
+    KernelField field(m, kernel);
+    field.load(static_cast<int>(first), static_cast<int>(last));
     m.hair.for_each(first, last, [&](int x, int y) {
       const std::size_t p = m.index(x, y);
       const Vec4* const color = &m.color[p];
       const float* const weight = &m.weight[p];
-      if (m.tangent[p] == Vec2()) {
+      const KernelChoice choice = field.at(x, y);
+      if (choice.variant == KernelChoice::kNone) {
         out[p] = *color;
         return;
       }
-      const KernelTaps taps = table.along(m.tangent[p]);
+      const KernelTaps taps = table.of(choice);
       if (table.flat()) {
         out[p] = flat_mean(color, weight, taps);
       } else if (by_color) {

@@ -19,15 +19,19 @@ struct AnisotropicKernel {
   float radius = 7;     ///< r, pixels, 0…kMostRadius; like the minor axis, it counts as half a pixel at least
   float aspect = 0.3f;  ///< ρ, 0…1
   float sigma_distance = INFINITY, sigma_angle = INFINITY, sigma_color = INFINITY;
-  float sigma_along = INFINITY, sigma_across = INFINITY;  ///< pixels
+  float sigma_along = INFINITY, sigma_across = INFINITY;  ///< σ∥ in units of r, σ⊥ in units of ρr
+  /// Whether each pixel takes, along the mean direction of the hair around it, the variant for it (filter/kernel_field.h).
+  bool adapts = false;
 
   static constexpr float kMostRadius = 64;
   /// Pixels in x and y within which all weights are: what the border of a matte has to be.
   int reach() const { return static_cast<int>(radius); }
 };
 
-/// The kernel of `settings` for hair in this box of screen pixels: r = k·√(Bx·By) with its sides, eq. 13, at most kMostRadius.
-AnisotropicKernel kernel_for(const PixelBox& hair, const LinkSettings& settings);
+/// The kernel of `settings` for hair in this box of screen pixels that `side`² visibility pixels each were rendered for. Where k
+/// is given, r = k·√(Bx·By) with the sides of the box, eq. 13. Else a kernel that adapts, with r = kernel_radius·side^−0.6: more
+/// samples need fewer pixels. r is kMostRadius at most.
+AnisotropicKernel kernel_for(const PixelBox& hair, int side, const LinkSettings& settings);
 
 /// Weighted means (eq. 12) of color and opacity over the hair around every pixel of m.hair, at Matte::index(); other pixels are
 /// undefined. A pixel without a tangent stays as it is. m.border ≥ kernel.reach(). Same bits for any number of threads and any

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <pelage/runtime.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -24,7 +25,7 @@ Matte random_matte(int width, int height, float hair, std::uint32_t seed = 1) {
       if (!(rng.uniform() < hair)) continue;
       const float alpha = rng.uniform(), angle = 6.2832f * rng.uniform();
       m.color[m.index(x, y)] = {alpha * rng.uniform(), alpha * 2 * rng.uniform(), alpha * rng.uniform(), alpha};
-      m.lie(x, y, {std::cos(angle), std::sin(angle)});
+      m.lie(x, y, {std::cos(angle), std::sin(angle)}, 0.05f * std::exp2(6 * static_cast<float>(x) / static_cast<float>(width)));
       m.hair.add(x, y);
     }
   return m;
@@ -50,7 +51,7 @@ double inverse_square(float sigma) {
 double filtered_green(const Matte& m, const AnisotropicKernel& k, int x, int y) {
   if (!m.hair.contains(x, y)) return 0;
   const Vec4 here = m.color[m.index(x, y)];
-  const Vec2 tangent = DirectionCells::middle(DirectionCells::cell_of(m.tangent[m.index(x, y)]));
+  const Vec2 tangent = DirectionCells::middle(DirectionCells::cell_of(MeanDirection::doubled(m.tangent[m.index(x, y)])));
   double sum = 0, weights = 0;
   const double r = std::max(0.5, static_cast<double>(k.radius)), minor = std::max(0.5, r * static_cast<double>(k.aspect));
   for (int j = 0; j < m.height; ++j)
@@ -64,10 +65,10 @@ double filtered_green(const Matte& m, const AnisotropicKernel& k, int x, int y) 
       double color = 0;
       for (const auto c : {&Vec4::x, &Vec4::y, &Vec4::z})
         color += std::pow(static_cast<double>(there.*c) - static_cast<double>(here.*c), 2);
-      const double w =
-          std::exp(-(dx * dx + dy * dy) / (r * r) * inverse_square(k.sigma_distance) -
-                   theta * theta * inverse_square(k.sigma_angle) - color * inverse_square(k.sigma_color) -
-                   along * along * inverse_square(k.sigma_along) / 2 - across * across * inverse_square(k.sigma_across) / 2);
+      const double w = std::exp(-(dx * dx + dy * dy) / (r * r) * inverse_square(k.sigma_distance) -
+                                theta * theta * inverse_square(k.sigma_angle) - color * inverse_square(k.sigma_color) -
+                                along * along / (r * r) * inverse_square(k.sigma_along) / 2 -
+                                across * across / (minor * minor) * inverse_square(k.sigma_across) / 2);
       sum += w * static_cast<double>(there.y), weights += w;
     }
   return sum / weights;
@@ -76,6 +77,12 @@ double filtered_green(const Matte& m, const AnisotropicKernel& k, int x, int y) 
 AnisotropicKernel kernel(float radius, float aspect, float distance = INFINITY, float angle = INFINITY, float color = INFINITY,
                          float along = INFINITY, float across = INFINITY) {
   return {radius, aspect, distance, angle, color, along, across};
+}
+
+AnisotropicKernel adapting(float radius, float aspect) {
+  AnisotropicKernel k = kernel(radius, aspect, INFINITY, INFINITY, INFINITY, 0.5f, 0.5f);
+  k.adapts = true;
+  return k;
 }
 
 template <class F>
@@ -89,13 +96,13 @@ TEST(DirectionCells, AreNarrowAndHaveNoSign) {
   for (int i = 0; i < 20000; ++i) {
     const double angle = 6.283185307179586 * i / 20000;
     const Vec2 t(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)));
-    const int cell = DirectionCells::cell_of(t);
+    const int cell = DirectionCells::cell_of(MeanDirection::doubled(t));
     ASSERT_TRUE(cell >= 0 && cell < DirectionCells::kDirections);
     ++uses[static_cast<std::size_t>(cell)];
     const Vec2 middle = DirectionCells::middle(cell);
     const double off = std::asin(std::fabs(static_cast<double>(t.x * middle.y - t.y * middle.x))) * 180 / 3.141592653589793;
     EXPECT_LT(off, 0.455) << angle;
-    EXPECT_TRUE(off > 0.2 || DirectionCells::cell_of(t * -1.f) == cell) << angle;
+    EXPECT_EQ(DirectionCells::cell_of(MeanDirection::doubled(t * -1.f)), cell) << angle;
   }
   for (const int n : uses) EXPECT_GT(n, 20);
 }
@@ -103,7 +110,7 @@ TEST(DirectionCells, AreNarrowAndHaveNoSign) {
 TEST(Anisotropic, IsItsDefinition) {
   for (const AnisotropicKernel& k :
        {kernel(3.1f, 0.4f), kernel(4.5f, 0.2f, 0.5f), kernel(3.3f, 1, 0.7f, 0.4f), kernel(4.3f, 0.5f, 0.6f, 0.3f, 0.9f),
-        kernel(5.2f, 0.6f, INFINITY, INFINITY, INFINITY, 2, 0.7f), kernel(0, 0.3f), kernel(0.9f, 1, 0.1f, 0.1f, 0.9f)})
+        kernel(5.2f, 0.6f, INFINITY, INFINITY, INFINITY, 0.4f, 0.25f), kernel(0, 0.3f), kernel(0.9f, 1, 0.1f, 0.1f, 0.9f)})
     for (const float hair : {0.2f, 1.f}) {
       const Matte m = random_matte(23, 19, hair);
       const Buffer<Vec4> out = filter_anisotropic(m, k);
@@ -174,20 +181,84 @@ TEST(Anisotropic, FiltersColorAndOpacityApart) {
 
 TEST(Anisotropic, TakesOddSizesAndEmptyPictures) {
   for (const auto& [w, h] : {std::pair{1, 1}, std::pair{1, 40}, std::pair{67, 1}, std::pair{17, 9}})
-    for (const float hair : {0.f, 0.5f, 1.f}) {
-      const Matte m = random_matte(w, h, hair);
-      const Buffer<Vec4> out = filter_anisotropic(m, kernel(4, 0.5f));
-      for_each_pixel(m.hair, [&](int x, int y) { EXPECT_TRUE(out[m.index(x, y)].x >= 0 && out[m.index(x, y)].w <= 1); });
-    }
+    for (const float hair : {0.f, 0.5f, 1.f})
+      for (const AnisotropicKernel& k : {kernel(4, 0.5f), adapting(4, 0.5f)}) {
+        const Matte m = random_matte(w, h, hair);
+        const Buffer<Vec4> out = filter_anisotropic(m, k);
+        for_each_pixel(m.hair,
+                       [&](int x, int y) { EXPECT_TRUE(out[m.index(x, y)].x >= 0 && out[m.index(x, y)].w <= 1.0001f); });
+      }
 }
 
-TEST(Anisotropic, SizeOfTheKernelIsThatOfTheHair) {
-  EXPECT_EQ(kernel_for({}, {}).radius, 0.f);
+// The variant for the mean thickness around a pixel and for the agreement of directions there, along their mean.
+TEST(Anisotropic, AdaptsToThicknessAndAgreement) {
+  const Matte m = random_matte(41, 33, 0.6f);
+  const AnisotropicKernel k = adapting(6, 0.2f);
+  const Buffer<Vec4> out = filter_anisotropic(m, k);
+  std::vector<int> seen(static_cast<std::size_t>(KernelVariants::count(k)));
+  for_each_pixel(m.hair, [&](int x, int y) {
+    MeanDirection sum;
+    double cos2 = 0, sin2 = 0, thickness = 0, count = 0;
+    for (int j = y - 2; j <= y + 2; ++j)
+      for (int i = x - 2; i <= x + 2; ++i) {
+        if (!m.hair.contains(i, j)) continue;
+        const Vec2 t = m.tangent[m.index(i, j)];
+        const double angle = 2 * std::atan2(static_cast<double>(t.y), static_cast<double>(t.x));
+        sum.add(t), cos2 += std::cos(angle), sin2 += std::sin(angle),
+            thickness += static_cast<double>(m.thickness[m.index(i, j)]);
+        count += 1;
+      }
+    const int variant =
+        KernelVariants::of(static_cast<float>(thickness / count), static_cast<float>(std::hypot(cos2, sin2) / count));
+    ++seen[static_cast<std::size_t>(variant)];
+    Matte lone = random_matte(41, 33, 0.6f);
+    lone.lie(x, y, sum.mean());
+    const double expected = filtered_green(lone, KernelVariants::kernel(k, variant), x, y);
+    EXPECT_NEAR(static_cast<double>(out[m.index(x, y)].y), expected, 2e-5) << x << " " << y << " variant " << variant;
+  });
+  EXPECT_GT(std::count_if(seen.begin(), seen.end(), [](int n) { return n > 0; }), 8);
+}
+
+TEST(KernelVariants, ShrinkWithThicknessAndRoundWithDisagreement) {
+  const AnisotropicKernel thin = adapting(8, 0.25f);
+  const auto variant = [&](float thickness, float agreement) {
+    return KernelVariants::kernel(thin, KernelVariants::of(thickness, agreement));
+  };
+  EXPECT_EQ(variant(0, 1).radius, 8);
+  EXPECT_EQ(variant(0.13f, 1).radius, 8);
+  EXPECT_EQ(variant(0.13f, 1).aspect, 0.25f);
+  EXPECT_NEAR(variant(0.4f, 1).radius, 4, 1e-5f);  // half of it at four times the thickness
+  EXPECT_NEAR(variant(1.6f, 1).radius, 2, 1e-5f);
+  EXPECT_EQ(variant(1.6f, 1).aspect, 0.5f);  // one pixel across at least
+  EXPECT_EQ(variant(1e6f, 1).radius, 1);
+  EXPECT_EQ(variant(1e6f, 0).aspect, 1);
+  for (const float thickness : {0.f, 0.5f, 2.f})
+    for (const float agreement : {0.f, 0.4f, 0.8f}) {
+      const AnisotropicKernel k = variant(thickness, agreement), agreed = variant(thickness, 1);
+      EXPECT_NEAR(k.radius * k.radius * k.aspect, agreed.radius * agreed.radius * agreed.aspect, 1e-4f);
+      EXPECT_GE(k.aspect, agreed.aspect);
+    }
+  EXPECT_EQ(variant(0.5f, 0).aspect, 1);
+  EXPECT_EQ(KernelVariants::kernel(kernel(5, 0.3f), 0).radius, 5);
+  EXPECT_EQ(KernelVariants::count(kernel(5, 0.3f)), 1);
+}
+
+TEST(Anisotropic, SizeOfThePublishedKernelIsThatOfTheHair) {
   LinkSettings s;
   s.kernel_size = 0.1f;
-  EXPECT_NEAR(kernel_for({20, 84, 10, 35}, s).radius, 0.1f * 40, 1e-5f);  // √(64 · 25)
+  EXPECT_EQ(kernel_for({}, 1, s).radius, 0.f);
+  EXPECT_NEAR(kernel_for({20, 84, 10, 35}, 1, s).radius, 0.1f * 40, 1e-5f);  // √(64 · 25)
+  EXPECT_FALSE(kernel_for({}, 1, s).adapts);
   s.kernel_size = 1e6f;
-  EXPECT_EQ(kernel_for({20, 84, 10, 35}, s).radius, AnisotropicKernel::kMostRadius);
+  EXPECT_EQ(kernel_for({20, 84, 10, 35}, 1, s).radius, AnisotropicKernel::kMostRadius);
+}
+
+TEST(Anisotropic, KernelThatAdaptsShrinksAsSamplesGrow) {
+  LinkSettings s;
+  EXPECT_TRUE(kernel_for({20, 84, 10, 35}, 1, s).adapts);
+  EXPECT_EQ(kernel_for({20, 84, 10, 35}, 1, s).radius, s.kernel_radius);
+  EXPECT_NEAR(kernel_for({}, 2, s).radius, 0.66f * s.kernel_radius, 0.01f);  // of four samples
+  EXPECT_EQ(kernel_for({}, 1, s).sigma_along, s.falloff);
 }
 
 TEST(MeanDirection, HasNoSign) {
@@ -202,13 +273,14 @@ TEST(MeanDirection, HasNoSign) {
 
 TEST(Matte, TangentsReachIntoGaps) {
   Matte m = random_matte(9, 5, 0);
-  m.lie(4, 2, {0, 1}), m.hair.add(4, 2);
+  m.lie(4, 2, {0, 1}, 0.5f), m.hair.add(4, 2);
   extend_tangents(m, bare_layer(9, 5), 2);
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < 9; ++x) {
       EXPECT_EQ(m.weight[m.index(x, y)], std::abs(x - 4) <= 2 ? 1.f : 0.f);
       EXPECT_EQ(m.hair.contains(x, y), std::abs(x - 4) <= 2);
       EXPECT_TRUE(!m.hair.contains(x, y) || m.tangent[m.index(x, y)] == Vec2(0, 1));
+      EXPECT_TRUE(!m.hair.contains(x, y) || m.thickness[m.index(x, y)] == 0.5f);
     }
 }
 

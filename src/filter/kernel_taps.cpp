@@ -16,7 +16,8 @@ kernel::FilterKernel terms_of(const AnisotropicKernel& k) {
   f.inverse_major2 = inverse_square(major), f.inverse_minor2 = inverse_square(minor);
   f.inverse_distance2 = inverse_square(major * k.sigma_distance);
   f.inverse_angle2 = inverse_square(k.sigma_angle), f.inverse_color2 = inverse_square(k.sigma_color);
-  f.half_inverse_along2 = inverse_square(k.sigma_along) / 2, f.half_inverse_across2 = inverse_square(k.sigma_across) / 2;
+  f.half_inverse_along2 = inverse_square(major * k.sigma_along) / 2;
+  f.half_inverse_across2 = inverse_square(minor * k.sigma_across) / 2;
   return f;
 }
 
@@ -46,19 +47,22 @@ Pairs pairs_along(Vec2 tangent, const kernel::FilterKernel& k, int reach, std::s
 }  // namespace
 
 Vec2 DirectionCells::middle(int cell) {
-  const float share = 1 - static_cast<float>(cell) / kQuadrant;
-  const Vec2 t(share, 1 - std::fabs(share));
-  return t * (1 / length(t));
+  const float turned = static_cast<float>(cell) / (kHalf / 2), share = turned < 2 ? 1 - turned : turned - 3;
+  return MeanDirection::halved({share, (turned < 2 ? 1 : -1) * (1 - std::fabs(share))});
 }
 
 KernelTable::KernelTable(const AnisotropicKernel& kernel, std::size_t stride)
     : terms_(terms_of(kernel)),
       flat_(std::isinf(kernel.sigma_distance) && std::isinf(kernel.sigma_angle) && std::isinf(kernel.sigma_color) &&
             std::isinf(kernel.sigma_along) && std::isinf(kernel.sigma_across)) {
-  std::vector<Pairs> by_cell(DirectionCells::kDirections);
+  constexpr auto directions = static_cast<std::size_t>(DirectionCells::kDirections);
+  std::vector<Pairs> by_cell(static_cast<std::size_t>(KernelVariants::count(kernel)) * directions);
   parallel_for(by_cell.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t cell = begin; cell < end; ++cell)
-      by_cell[cell] = pairs_along(DirectionCells::middle(static_cast<int>(cell)), terms_, kernel.reach(), stride);
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      const AnisotropicKernel variant = KernelVariants::kernel(kernel, static_cast<int>(cell / directions));
+      by_cell[cell] =
+          pairs_along(DirectionCells::middle(static_cast<int>(cell % directions)), terms_of(variant), variant.reach(), stride);
+    }
   });
   for (const Pairs& pairs : by_cell) {
     first_.push_back(offset_.size());

@@ -10,22 +10,23 @@
 #include <vector>
 
 #include "filter/anisotropic.h"
+#include "filter/kernel_field.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
 
 /// Directions without a sign, in kDirections cells; what lies in a cell takes the direction of its middle, at most 0.45° off.
-/// Cells are even in the share of x in |x| + |y|, which needs no arc tangent; the axes and diagonals are middles.
+/// They are given by the vector of twice the angle (MeanDirection), and cells are even in the share of x in its |x| + |y|, which
+/// needs no arc tangent; the axes and diagonals are middles.
 struct DirectionCells {
-  static constexpr int kQuadrant = 128, kDirections = 2 * kQuadrant;  ///< cells of 90° and of 180°
-  /// The cell of a vector other than 0.
-  static int cell_of(Vec2 t) {
-    // Turned into the half plane y ≥ 0: from (1, 0) over (0, 1) to (−1, 0).
-    const float x = t.y < 0 ? -t.x : t.x, y = std::fabs(t.y);
-    const float share = x / (std::fabs(x) + y);  // 1 … −1
-    return static_cast<int>((1 - share) * kQuadrant + 0.5f) % kDirections;
+  static constexpr int kHalf = 128, kDirections = 2 * kHalf;  ///< cells of 90° and of 180°
+  /// The cell of a doubled direction other than 0.
+  static int cell_of(Vec2 doubled) {
+    const float share = doubled.x / (std::fabs(doubled.x) + std::fabs(doubled.y));  // 1 … −1
+    const float turned = doubled.y < 0 ? 3 + share : 1 - share;                     // 0 … 4 once around
+    return static_cast<int>(turned * (kHalf / 2) + 0.5f) % kDirections;
   }
-  /// The unit vector in the middle of a cell.
+  /// The unit vector, of the angle itself, in the middle of a cell.
   static Vec2 middle(int cell);
 };
 
@@ -36,18 +37,19 @@ struct KernelTaps {
   std::span<const float> weight;         ///< but for the term of color, of which the pixel in the middle has 1
 };
 
-/// A kernel's pixels for every direction.
+/// The pixels of a kernel's variants for every direction.
 class KernelTable {
  public:
-  /// For pictures with `stride` pixels a row. O(kDirections · reach²).
+  /// For pictures with `stride` pixels a row. O(variants · kDirections · reach²).
   KernelTable(const AnisotropicKernel& kernel, std::size_t stride);
 
-  KernelTaps along(Vec2 tangent) const {
-    const auto cell = static_cast<std::size_t>(DirectionCells::cell_of(tangent));
+  /// `choice` is not none.
+  KernelTaps of(const KernelChoice& choice) const {
+    const auto cell = static_cast<std::size_t>(choice.variant * DirectionCells::kDirections + choice.direction);
     const std::size_t first = first_[cell], count = first_[cell + 1] - first;
     return {std::span(offset_).subspan(first, count), std::span(weight_).subspan(first, count)};
   }
-  /// The most pairs that a direction has.
+  /// The most pairs that a choice has.
   std::size_t most_pairs() const;
   const kernel::FilterKernel& terms() const { return terms_; }
   /// Whether all weights are 1.
@@ -56,7 +58,7 @@ class KernelTable {
  private:
   kernel::FilterKernel terms_;
   bool flat_;
-  std::vector<std::size_t> first_;  // by cell
+  std::vector<std::size_t> first_;  // by variant and direction
   std::vector<std::int32_t> offset_;
   std::vector<float> weight_;
 };

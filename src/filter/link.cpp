@@ -248,6 +248,7 @@ Links link_strands(StrandLayer& layer, const StrandCurves& curves, const LinkSet
       layer.visibility[step.pixel] = step.sample;
       layer.depth[step.pixel] = step.depth;
       layer.color[step.pixel] = layer.color[source];
+      if (!layer.thickness.empty()) layer.thickness[step.pixel] = layer.thickness[source];
       layer.hair.add_shared(step.pixel);
       fills[task].push_back({step.pixel, source});
     }

@@ -57,7 +57,7 @@ Vec4 seen_behind(const StrandLayer& layer, const Behind& behind, int x, int y) {
 
 Matte::Matte(int w, int h, int b, bool exact_coverage) : width(w), height(h), border(b), hair(w, h) {
   const std::size_t pixels = stride() * static_cast<std::size_t>(h + 2 * b);
-  color.resize(pixels), weight.resize(pixels), tangent.resize(pixels);
+  color.resize(pixels), weight.resize(pixels), tangent.resize(pixels), thickness.resize(pixels);
   if (exact_coverage) coverage.resize(pixels);
 }
 
@@ -68,13 +68,12 @@ void Matte::clear(int first, int last) {
   std::fill(weight.begin() + begin, weight.begin() + end, 0.f);
 }
 
-Vec2 MeanDirection::mean() const {
-  const float square = cos2_ * cos2_ + sin2_ * sin2_;
+Vec2 MeanDirection::halved(Vec2 d) {
+  const float square = dot(d, d);
   if (!(square > 0)) return {};
-  const float length = std::sqrt(square);
-  // Half of the angle, by the half-angle formulas.
-  const float c = cos2_ / length, x = std::sqrt(std::max(0.f, (1 + c) / 2)), y = std::sqrt(std::max(0.f, (1 - c) / 2));
-  return {x, sin2_ < 0 ? -y : y};
+  // The half-angle formulas.
+  const float c = d.x / std::sqrt(square), x = std::sqrt(std::max(0.f, (1 + c) / 2)), y = std::sqrt(std::max(0.f, (1 - c) / 2));
+  return {x, d.y < 0 ? -y : y};
 }
 
 void extend_tangents(Matte& m, const StrandLayer& layer, int reach) {
@@ -83,16 +82,17 @@ void extend_tangents(Matte& m, const StrandLayer& layer, int reach) {
   // Tangents of gaps are written where none is read: hair is left as it is until all are known.
   m.hair.grown(reach).without(m.hair).parallel_for_each([&](int x, int y) {
     MeanDirection sum;
-    float nearest = std::numeric_limits<float>::infinity();
+    float nearest = std::numeric_limits<float>::infinity(), thickness = 0, count = 0;
     for (int j = std::max(0, y - reach); j <= std::min(m.height - 1, y + reach); ++j)
       for (std::uint64_t bits = m.hair.bits(x - reach, j, 2 * reach + 1); bits != 0; bits &= bits - 1) {
         const int i = x - reach + std::countr_zero(bits);
-        sum.add(m.tangent[m.index(i, j)]);
+        const std::size_t p = m.index(i, j);
+        sum.add(m.tangent[p]), thickness += m.thickness[p], count += 1;
         if (!layer.opaque_depth.empty()) nearest = std::min(nearest, nearest_hair(layer, i, j));
       }
     const Vec2 tangent = sum.mean();
     if (tangent == Vec2() || farthest_opaque(layer, x, y) < nearest) return;
-    m.lie(x, y, tangent);
+    m.lie(x, y, tangent, thickness / count);
     gaps.add(x, y);
   });
   m.hair = m.hair.united(gaps);

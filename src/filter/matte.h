@@ -26,37 +26,42 @@ class Matte {
   int width = 0, height = 0;  ///< screen pixels, without the border
   int border = 0;             ///< pixels
 
-  PixelMask hair;          ///< pixels that show hair, or lie in a gap of it
-  Buffer<Vec4> color;      ///< premultiplied linear R, G, B and opacity; 0 without hair
-  Buffer<float> weight;    ///< 1 for the pixels of `hair`, else 0
-  Buffer<Vec2> tangent;    ///< unit vector on the screen along the hair, sign arbitrary; 0, 0 seen end-on. Only for `hair`
-  Buffer<float> coverage;  ///< the opacity that the picture gets, where it is known exactly; else empty
+  PixelMask hair;           ///< pixels that show hair, or lie in a gap of it
+  Buffer<Vec4> color;       ///< premultiplied linear R, G, B and opacity; 0 without hair
+  Buffer<float> weight;     ///< 1 for the pixels of `hair`, else 0
+  Buffer<Vec2> tangent;     ///< unit vector on the screen along the hair, sign arbitrary; 0, 0 seen end-on. Only for `hair`
+  Buffer<float> thickness;  ///< diameter of a strand, pixels; 0 where nobody knows. Only for `hair`
+  Buffer<float> coverage;   ///< the opacity that the picture gets, where it is known exactly; else empty
 
   std::size_t stride() const { return static_cast<std::size_t>(width) + 2 * static_cast<std::size_t>(border); }
   /// −border ≤ x < width + border, and so for y.
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y + border) * stride() + static_cast<std::size_t>(x + border);
   }
-  /// Makes a pixel one of hair that lies along `t`; hair.add() is for the caller.
-  void lie(int x, int y, Vec2 t) {
+  /// Makes a pixel one of hair, `thick` pixels thick, that lies along `t`; hair.add() is for the caller.
+  void lie(int x, int y, Vec2 t, float thick = 0) {
     const std::size_t p = index(x, y);
-    weight[p] = 1, tangent[p] = t;
+    weight[p] = 1, tangent[p] = t, thickness[p] = thick;
   }
-  std::size_t bytes() const { return color.bytes() + weight.bytes() + tangent.bytes() + coverage.bytes(); }
+  std::size_t bytes() const { return color.bytes() + weight.bytes() + tangent.bytes() + thickness.bytes() + coverage.bytes(); }
 };
 
 /// Directions without a sign, such as tangents: their mean is that of the vectors of twice their angles.
 class MeanDirection {
  public:
-  void add(Vec2 t) { cos2_ += t.x * t.x - t.y * t.y, sin2_ += 2 * t.x * t.y; }
+  /// The vector of twice the angle of a unit vector.
+  static Vec2 doubled(Vec2 t) { return {t.x * t.x - t.y * t.y, 2 * t.x * t.y}; }
+  /// A unit vector of half the angle; 0 for 0.
+  static Vec2 halved(Vec2 d);
+  void add(Vec2 t) { sum_ = sum_ + doubled(t); }
   /// A unit vector; 0 where nothing was added, or all cancels.
-  Vec2 mean() const;
+  Vec2 mean() const { return halved(sum_); }
 
  private:
-  float cos2_ = 0, sin2_ = 0;
+  Vec2 sum_;
 };
 
-/// Gives pixels without hair, but with some within `reach` pixels, the mean direction of that: the filter then closes gaps
+/// Gives pixels without hair, but with some within `reach` pixels, the mean direction and thickness of that: the filter then closes gaps
 /// as it thins what is around them, and hair keeps its energy. Pixels where the opaque scene is in front of all that hair are
 /// no gaps: hair there is not missing, but hidden.
 inline constexpr int kGapReach = 2;  ///< gaps between strands that one sample misses are a few pixels wide

@@ -10,8 +10,8 @@ namespace pelage {
 /// strand a sample meets. Within 0…1; 0 where no strand has neighbors. Deterministic; O(pixels).
 float color_noise(const HairSamples& samples);
 
-/// r of the orientation-aware filter, screen pixels, that brings colors of this noise nearest to those of many samples: docs/denoise.md
-/// has the measurements that it is fitted to. `side`²: samples a pixel.
-float radius_for_noise(float noise, int side);
+/// How many times as long as for opacity the orientation-aware filter has to be to bring colors of this noise nearest to those of many
+/// samples: docs/denoise.md has the measurements that it is fitted to.
+float radius_for_noise(float noise);
 
 }  // namespace pelage

@@ -36,6 +36,8 @@ int check_settings(const Image& gbuffer, const DenoiseSettings& s) {
   };
   require(is_link_sample_count(s.samples), "samples", s.samples, "1, 4, 9 or 16");
   require(s.link.kernel_size >= 0 && s.link.kernel_size <= 1, "link.kernel_size", s.link.kernel_size, "0…1");
+  require(s.link.kernel_radius >= 0 && s.link.kernel_radius <= 64, "link.kernel_radius", s.link.kernel_radius, "0…64");
+  require(s.link.falloff > 0, "link.falloff", s.link.falloff, "> 0");
   require(s.link.aspect >= 0 && s.link.aspect <= 1, "link.aspect", s.link.aspect, "0…1");
   require(s.link.sigma > 0, "link.sigma", s.link.sigma, "a positive number of pixels");
   require(s.reach >= 0, "reach", s.reach, "a number of pixels");
@@ -168,14 +170,6 @@ CameraView view_of(const Scene& scene, const HairSamples& samples) {
   return make_camera_view(scene.camera, samples.width, samples.height);
 }
 
-/// The settings of link for a kernel of `radius` pixels, by eq. 13 of Huang 2025 the other way round.
-LinkSettings with_radius(LinkSettings link, float radius, const StrandLayer& layer) {
-  const PixelBox box = screen_box(layer);
-  const float size = std::sqrt(static_cast<float>(box.width()) * static_cast<float>(box.height()));
-  link.kernel_size = size > 0 ? std::min(1.f, radius / size) : 0;
-  return link;
-}
-
 std::size_t count_strands(const HairSamples& samples) {
   std::vector<std::uint64_t> keys;
   for (std::size_t p = 0; p < samples.strand.size(); ++p)
@@ -225,12 +219,9 @@ DenoiseResult denoise(const Image& gbuffer, const DenoiseSettings& settings, con
   RenderSettings how;
   how.link = settings.link;
   float color_scale = 1;
-  if (how.link.filter && how.link.kernel_size == 0) {
-    const float clean = radius_for_noise(0, side);
-    how.link = with_radius(how.link, clean, input.layer), color_scale = radius_for_noise(result.noise, side) / clean;
-  }
+  if (how.link.filter && how.link.kernel_size == 0) color_scale = radius_for_noise(result.noise);
   if (how.link.filter && result.hair_pixels > 0) {
-    result.radius = kernel_for(screen_box(input.layer), how.link).radius;
+    result.radius = kernel_for(screen_box(input.layer), side, how.link).radius;
     result.color_radius = color_scale * result.radius;
   }
   result.linear = link_and_filter(std::move(input), *curves, how, stages, nullptr, color_scale);

@@ -26,10 +26,11 @@ constexpr std::size_t kPixelsPerTask = 1 << 14;
 /// What the layer's pixels show, from the evaluations of shade; `depth` of the opaque scene and `coverage` are those of the
 /// whole picture, or empty.
 void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radiance& radiance,
-                    const Buffer<VisibilitySample>& samples, const Buffer<float>& depth, const Buffer<float>& coverage,
+                    const Buffer<StrandSample>& samples, const Buffer<float>& depth, const Buffer<float>& coverage,
                     StrandLayer& layer) {
   const std::size_t width = static_cast<std::size_t>(layer.width), pixels = width * static_cast<std::size_t>(layer.height);
   layer.visibility.resize(pixels), layer.depth.resize(pixels), layer.color.resize(pixels);
+  layer.thickness.resize(pixels);
   if (!depth.empty()) layer.opaque_depth.resize(pixels);
   if (!coverage.empty()) layer.coverage.resize(pixels);
   layer.hair = PixelMask(layer.width, layer.height);
@@ -41,7 +42,8 @@ void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radia
         const std::uint32_t i = radiance.index[q];
         const bool hair = i != Radiance::kNone;
         if (hair) layer.hair.add(static_cast<int>(q - row), static_cast<int>(y));
-        layer.visibility[p] = hair ? samples[i] : VisibilitySample();
+        layer.visibility[p] = hair ? samples[i].visibility : VisibilitySample();
+        layer.thickness[p] = hair ? samples[i].thickness : 0;
         layer.depth[p] = hair ? key_depth(keys[q]) : INFINITY;
         layer.color[p] = hair ? radiance.color[i] : Vec3();
         if (!depth.empty()) layer.opaque_depth[p] = depth[q];
@@ -66,8 +68,8 @@ Buffer<float> nearest_of(const StrandLayer& layer, const Behind& behind) {
 
 std::uint64_t bytes_of(const LinkInput& in) {
   const StrandLayer& l = in.layer;
-  return l.visibility.bytes() + l.depth.bytes() + l.color.bytes() + l.coverage.bytes() + l.opaque_depth.bytes() +
-         in.behind.color.bytes() + in.behind.depth.bytes();
+  return l.visibility.bytes() + l.thickness.bytes() + l.depth.bytes() + l.color.bytes() + l.coverage.bytes() +
+         l.opaque_depth.bytes() + in.behind.color.bytes() + in.behind.depth.bytes();
 }
 
 }  // namespace
@@ -110,7 +112,7 @@ LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage
       return StageWork{segments, area.coverage.bytes()};
     });
   Radiance radiance;
-  Buffer<VisibilitySample> samples;
+  Buffer<StrandSample> samples;
   stages.run("shade", "evaluations", [&](const Progress&) {
     radiance = shade(inputs.scene, inputs.view, inputs.numbering, gbuffer, inputs.rig, std::array{kPixelCenter}, &samples);
     return StageWork{radiance.color.size(), radiance.color.bytes() + radiance.index.bytes() + samples.bytes()};
@@ -147,7 +149,7 @@ Image link_and_filter(LinkInput input, const StrandCurves& curves, const RenderS
   AlphaStats stats;
   AnisotropicKernel kernel, color_kernel;
   stages.run("filter.alpha", "pixels", [&](const Progress&) {
-    kernel = kernel_for(screen_box(layer), settings.link);
+    kernel = kernel_for(screen_box(layer), layer.side, settings.link);
     color_kernel = kernel;
     color_kernel.radius = std::min(color_scale * kernel.radius, AnisotropicKernel::kMostRadius);
     matte = fix_alpha(layer, links, settings.link.alpha, color_kernel.reach(), stats);

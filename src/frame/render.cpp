@@ -34,6 +34,8 @@ void check_settings(const RenderSettings& s) {
           "1, 2, 4, 8 or 16; others with method ssaa");
   require(!is_linking(s.method) || is_link_sample_count(s.samples), "samples", s.samples, "1, 4, 9 or 16 with method link");
   require(s.link.kernel_size >= 0 && s.link.kernel_size <= 1, "link.kernel_size", s.link.kernel_size, "0…1");
+  require(s.link.kernel_radius >= 0 && s.link.kernel_radius <= 64, "link.kernel_radius", s.link.kernel_radius, "0…64");
+  require(s.link.falloff > 0, "link.falloff", s.link.falloff, "a positive number of half axes");
   require(s.link.sigma > 0, "link.sigma", s.link.sigma, "a positive number of pixels");
   require(s.frames >= 1 && s.frames <= 4096, "frames", s.frames, "1…4096");
   require(s.subdivisions >= 0 && s.subdivisions <= 64, "subdivisions", s.subdivisions, "0…64");

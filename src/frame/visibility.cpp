@@ -39,14 +39,15 @@ Vec4 Behind::at(std::size_t p) const {
 VisibilityPacker::VisibilityPacker(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering)
     : scene_(scene), view_(view), numbering_(numbering), spans_(number_spans(scene)) {}
 
-VisibilitySample VisibilityPacker::sample(const SegmentRef& segment, float t, const StrandSurface& surface) const {
+StrandSample VisibilityPacker::sample(const SegmentRef& segment, float t, const StrandSurface& surface) const {
   const Vec3 c = transform_point(view_.world_to_camera, surface.position);
   const Vec2 along = project_direction(view_, c, transform_vector(view_.world_to_camera, surface.tangent));
   const float pixels = length(along), subdivisions = static_cast<float>(numbering_.subdivisions[segment.groom]);
   const std::uint32_t span =
       spans_.groom_base[segment.groom] + scene_.grooms[segment.groom].strands->offsets[segment.strand] + segment.span;
   const float on_span = (static_cast<float>(segment.k) + t) / subdivisions;
-  return pack_visibility(pixels > 0 ? along * (1 / pixels) : Vec2(), on_span, span, false);
+  return {pack_visibility(pixels > 0 ? along * (1 / pixels) : Vec2(), on_span, span, false),
+          surface.width * pixels_per_metre(view_, c.z)};
 }
 
 }  // namespace pelage

@@ -36,6 +36,12 @@ inline VisibilitySample pack_visibility(Vec2 tangent, float t, std::uint32_t pri
   return {-tangent.y, tangent.x, t, primitive << 2 | (filled ? VisibilitySample::kFilled : 0) | VisibilitySample::kHair};
 }
 
+/// A sample as shade finds it: what its packing has no word for comes along.
+struct StrandSample {
+  VisibilitySample visibility;
+  float thickness = 0;  ///< diameter of the strand, pixels
+};
+
 /// Ids of VisibilitySample::primitive() for a scene: those of its segments, would every span be one. Throws Error where 30 bits
 /// do not name them.
 SegmentNumbering number_spans(const Scene& scene);
@@ -45,7 +51,7 @@ class VisibilityPacker {
  public:
   VisibilityPacker(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering);
   /// `surface` is that of the segment at t (frame/segment_lookup.h).
-  VisibilitySample sample(const SegmentRef& segment, float t, const StrandSurface& surface) const;
+  StrandSample sample(const SegmentRef& segment, float t, const StrandSurface& surface) const;
 
  private:
   const Scene& scene_;
@@ -64,6 +70,7 @@ struct StrandLayer {
   PixelMask hair;                       ///< where these show hair, hit or filled
   Buffer<float> depth;                  ///< [h·w] camera z of the strand, metres; +inf for none
   Buffer<Vec3> color;                   ///< [h·w] its scene-linear radiance; 0 for none
+  Buffer<float> thickness;              ///< [h·w] its diameter, visibility pixels; or empty where nobody knows
   Buffer<float> coverage;               ///< [h·w] share of the pixel that strands cover, 0…1; or empty where nobody knows
   Buffer<float> opaque_depth;           ///< [h·w] camera z of the opaque scene, +inf for none; or empty without one
 

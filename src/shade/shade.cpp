@@ -37,7 +37,7 @@ Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
 }
 
 void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, ShadeBatch& batch, std::size_t i,
-                 VisibilitySample* visibility) {
+                 StrandSample* visibility) {
   const GroomInstance& groom = g.scene.grooms[segment.groom];
   const Vec2 at = screen_place(g, key);
   const float t = locate_on_segment(g.scene, g.numbering, g.view, segment, at.x, at.y);
@@ -60,7 +60,7 @@ void pad(ShadeBatch& batch) {
 
 /// Shades what the keys at `visible` show, at most ShadeBatch::kSize of them, groom by groom. `visibility` may be null.
 void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, std::span<const std::uint32_t> visible,
-                 Evaluator evaluator, ShadeBatch& batch, Vec3* color, VisibilitySample* visibility) {
+                 Evaluator evaluator, ShadeBatch& batch, Vec3* color, StrandSample* visibility) {
   std::array<SegmentRef, ShadeBatch::kSize> segments;
   std::array<std::uint32_t, ShadeBatch::kSize> pending, left, taken;
   std::size_t pending_count = visible.size();
@@ -91,13 +91,13 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
 }  // namespace
 
 Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
-               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<VisibilitySample>* visibility) {
+               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<StrandSample>* visibility) {
   return shade_with(evaluate, scene, view, numbering, gbuffer, rig, sample_positions, visibility);
 }
 
 Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
                     const GBuffer& gbuffer, const LightRig& rig, std::span<const Vec2> sample_positions,
-                    Buffer<VisibilitySample>* visibility) {
+                    Buffer<StrandSample>* visibility) {
   const bool sampled = !gbuffer.sample_keys.empty();
   const Buffer<PixelKey>& keys = sampled ? gbuffer.sample_keys : gbuffer.center;
   const int samples = sampled ? gbuffer.samples : 1;

@@ -27,11 +27,11 @@ using Evaluator = void (*)(const ShadeConstants&, ShadeBatch&);
 /// `visibility`, where given, becomes the visibility sample of every evaluation, in the order of `color`; its t is that on the
 /// whole span, and throws Error where 30 bits do not number the spans.
 Radiance shade(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering, const GBuffer& gbuffer,
-               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<VisibilitySample>* visibility = nullptr);
+               const LightRig& rig, std::span<const Vec2> sample_positions, Buffer<StrandSample>* visibility = nullptr);
 
 /// The same with another evaluator: the scalar reference of tests and benchmarks.
 Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
                     const GBuffer& gbuffer, const LightRig& rig, std::span<const Vec2> sample_positions,
-                    Buffer<VisibilitySample>* visibility = nullptr);
+                    Buffer<StrandSample>* visibility = nullptr);
 
 }  // namespace pelage
