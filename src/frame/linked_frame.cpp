@@ -53,6 +53,25 @@ void spread_samples(const Buffer<PixelKey>& keys, int picture_width, const Radia
   });
 }
 
+/// Where all samples within so many pixels hit, hair is dense: it counts as full without drawing all the strands that lie there.
+constexpr int kDenseReach = 2;
+
+/// Which share of each pixel strands cover.
+Buffer<float> cover(const FrameInputs& inputs, const Buffer<PixelKey>& center, GBuffer& area, std::uint64_t& segments,
+                    const Progress& progress) {
+  const int width = inputs.view.width, height = inputs.view.height;
+  const PixelMask hit(width, height, [&](std::size_t p) { return center[p] != kEmptyPixel; });
+  const PixelMask missed(width, height, [&](std::size_t p) { return center[p] == kEmptyPixel; });
+  const PixelMask dense = hit.without(missed.grown(kDenseReach));
+  segments = raster_strands(inputs.scene, inputs.view, inputs.numbering, {.center = false, .coverage = true, .full = &dense},
+                            area, progress);
+  Buffer<float> covered(area.coverage.size());
+  parallel_for(covered.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) covered[p] = analytic_coverage(area, p);
+  });
+  return covered;
+}
+
 Buffer<float> nearest_of(const StrandLayer& layer, const Behind& behind) {
   const int side = layer.side, width = behind.width / side, height = behind.height / side;
   Buffer<float> nearest(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -102,12 +121,8 @@ LinkInput render_strand_layer(const FrameInputs& inputs, int side, bool coverage
     stages.run("raster.coverage", "segments", [&](const Progress& progress) {
       GBuffer area;
       std::swap(area.opaque_depth, gbuffer.opaque_depth);
-      const std::uint64_t segments =
-          raster_strands(inputs.scene, inputs.view, inputs.numbering, {.center = false, .coverage = true}, area, progress);
-      covered.resize(area.coverage.size());
-      parallel_for(covered.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) covered[p] = analytic_coverage(area, p);
-      });
+      std::uint64_t segments = 0;
+      covered = cover(inputs, gbuffer.center, area, segments, progress);
       std::swap(area.opaque_depth, gbuffer.opaque_depth);
       return StageWork{segments, area.coverage.bytes()};
     });

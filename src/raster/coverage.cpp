@@ -1,6 +1,7 @@
 #include "raster/coverage.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace pelage {
@@ -18,14 +19,29 @@ bool hidden(const GBuffer& out, std::size_t pixel, float depth) {
 
 }  // namespace
 
-FullTiles::FullTiles(int width, int height)
+FullTiles::FullTiles(int width, int height, const PixelMask* full)
     : across_((width + kSide - 1) / kSide), down_((height + kSide - 1) / kSide),
       open_(std::make_unique<std::atomic<std::uint8_t>[]>(static_cast<std::size_t>(across_ * down_))),
       deep_(std::make_unique<std::int32_t[]>(static_cast<std::size_t>(across_ * down_))) {
+  const auto count_full = [&](int x, int y) {
+    int count = 0;
+    for (int j = y * kSide; full && j < std::min(height, (y + 1) * kSide); ++j)
+      count += std::popcount(full->bits(x * kSide, j, kSide));
+    return count;
+  };
   for (int y = 0; y < down_; ++y)
-    for (int x = 0; x < across_; ++x)
-      open_[static_cast<std::size_t>(y * across_ + x)] =
-          static_cast<std::uint8_t>(std::min(kSide, width - x * kSide) * std::min(kSide, height - y * kSide));
+    for (int x = 0; x < across_; ++x) {
+      const int pixels = std::min(kSide, width - x * kSide) * std::min(kSide, height - y * kSide);
+      open_[static_cast<std::size_t>(y * across_ + x)] = static_cast<std::uint8_t>(pixels - count_full(x, y));
+    }
+  for (int y = 0; full && y < down_; ++y)
+    for (int x = 0; x < across_; ++x) deep_[static_cast<std::size_t>(y * across_ + x)] = full_with_neighbors(x, y);
+}
+
+bool FullTiles::full_with_neighbors(int tile_x, int tile_y) const {
+  bool deep = true;
+  for (int n = 0; n < 9; ++n) deep = deep && full(tile_x + n % 3 - 1, tile_y + n / 3 - 1);
+  return deep;
 }
 
 bool FullTiles::full(int tile_x, int tile_y) const {
@@ -39,9 +55,8 @@ void FullTiles::fill_pixel(int x, int y) {
   for (int j = tile_y - 1; j <= tile_y + 1; ++j)
     for (int i = tile_x - 1; i <= tile_x + 1; ++i) {
       if (i < 0 || j < 0 || i >= across_ || j >= down_) continue;
-      bool deep = true;
-      for (int n = 0; n < 9; ++n) deep = deep && full(i + n % 3 - 1, j + n / 3 - 1);
-      if (deep) std::atomic_ref(deep_[static_cast<std::size_t>(j * across_ + i)]).store(1, std::memory_order_relaxed);
+      if (full_with_neighbors(i, j))
+        std::atomic_ref(deep_[static_cast<std::size_t>(j * across_ + i)]).store(1, std::memory_order_relaxed);
     }
 }
 

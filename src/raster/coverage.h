@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/pixel_mask.h"
 #include "frame/frame.h"
 
 namespace pelage {
@@ -24,7 +25,8 @@ class FullTiles {
  public:
   static constexpr int kSide = 8;  ///< pixels
 
-  FullTiles(int width, int height);
+  /// Of pixels that are not full but for those in `full`, where that is not null.
+  FullTiles(int width, int height, const PixelMask* full = nullptr);
 
   /// To be called by the one who lifts a pixel to kFullDepth or above.
   void fill_pixel(int x, int y);
@@ -35,6 +37,7 @@ class FullTiles {
 
  private:
   bool full(int tile_x, int tile_y) const;
+  bool full_with_neighbors(int tile_x, int tile_y) const;
 
   int across_, down_;
   std::unique_ptr<std::atomic<std::uint8_t>[]> open_;  // pixels that are not full yet

@@ -42,8 +42,9 @@ Mask reaching_open(const ScreenBlock& block, std::size_t j, const FullTiles& til
   return !(known && deep_lanes);
 }
 
-/// Appends the lanes of `used` to their lists.
-void append(const SegmentLanes& w, Mask used, Float column, Float row, Float area, Float depth, CoverageScratch& scratch) {
+/// Appends the lanes of `used` to their lists, those whose pixels are not full yet.
+void append(const SegmentLanes& w, Mask used, Float column, Float row, Float area, Float depth, const GBuffer& out,
+            CoverageScratch& scratch) {
   HWY_ALIGN float areas[hn::MaxLanes(wide::FloatTag())], depths[hn::MaxLanes(wide::FloatTag())];
   HWY_ALIGN std::uint32_t pixels[hn::MaxLanes(wide::UintTag())];
   hn::Store(area.v, kFloat, areas);
@@ -53,12 +54,13 @@ void append(const SegmentLanes& w, Mask used, Float column, Float row, Float are
   hn::StoreMaskBits(kFloat, used.m, reinterpret_cast<std::uint8_t*>(&bits));
   for (; bits != 0; bits &= bits - 1) {
     const std::size_t l = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+    if (std::atomic_ref(out.coverage[pixels[l]]).load(std::memory_order_relaxed) >= kFullDepth) continue;
     scratch.lanes[l].push_back({pixels[l], areas[l], depths[l]});
   }
 }
 
 /// One column of each lane, as far as its segment crosses it.
-HWY_INLINE void visit_column(const SegmentLanes& w, Mask drawn, Float column, CoverageScratch& scratch) {
+HWY_INLINE void visit_column(const SegmentLanes& w, Mask drawn, Float column, const GBuffer& out, CoverageScratch& scratch) {
   const wide::RasterBand& band = w.band;
   const Float from = max(column, min(band.u, band.end_u)), to = min(column + Float(1.0f), max(band.u, band.end_u));
   const Float share = to - from;
@@ -71,7 +73,7 @@ HWY_INLINE void visit_column(const SegmentLanes& w, Mask drawn, Float column, Co
   while (wide::any(open)) {
     const Float area = wide::raster_band_area_part(band, row + Float(0.5f), center, half, share);
     const Mask covered = open && area > Float(0.0f);
-    if (wide::any(covered)) append(w, covered, column, row, area, wide::raster_band_depth(band, s), scratch);
+    if (wide::any(covered)) append(w, covered, column, row, area, wide::raster_band_depth(band, s), out, scratch);
     row = row + Float(1.0f);
     open = open && row <= last;
   }
@@ -85,7 +87,7 @@ void Coverage(const ScreenBlock& block, CoverageScratch& scratch, FullTiles& til
     if (wide::any(reaching) && load_segments(block, j, out.width, out.height, 0.0f, 1.0f, w)) {
       Float column = w.column;
       do {
-        visit_column(w, reaching, column, scratch);
+        visit_column(w, reaching, column, out, scratch);
         column = column + Float(1.0f);
       } while (wide::any(reaching && column <= w.last));
     }

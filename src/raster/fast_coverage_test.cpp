@@ -93,6 +93,25 @@ TEST(FastCoverage, EndsBehindTheOpaqueScene) {
   EXPECT_GT(right, 0);
 }
 
+// Pixels that are said to be full read so; all others are as they are without.
+TEST(FastCoverage, DrawsNothingWhereItIsSaidToBeFull) {
+  const Scene scene = test::scene_of(test::helices(400, 16, 0.002f, 4e-4f));
+  const CameraView view = make_camera_view(scene.camera, 150, 130);
+  const SegmentNumbering numbering = number_segments(scene, view);
+  const PixelMask full(150, 130, [](std::size_t p) { return p % 150 > 40 && p % 150 < 110 && p / 150 > 20 && p % 7 > 0; });
+  GBuffer whole, rest;
+  raster_strands(scene, view, numbering, {.center = false, .coverage = true}, whole);
+  raster_strands(scene, view, numbering, {.center = false, .coverage = true, .full = &full}, rest);
+  int drawn = 0;
+  for (int y = 0; y < 130; ++y)
+    for (int x = 0; x < 150; ++x) {
+      const auto p = static_cast<std::size_t>(y * 150 + x);
+      EXPECT_TRUE(full.contains(x, y) ? rest.coverage[p] > kFullDepth : rest.coverage[p] == whole.coverage[p]) << x << " " << y;
+      drawn += !full.contains(x, y) && whole.coverage[p] > 0;
+    }
+  EXPECT_GT(drawn, 2000);
+}
+
 TEST(FullTiles, AreDeepWhenTheirNeighborsAreFull) {
   FullTiles tiles(20, 16);  // 3 × 2 tiles, the last column 4 pixels wide
   for (int y = 0; y < 16; ++y)
@@ -105,6 +124,14 @@ TEST(FullTiles, AreDeepWhenTheirNeighborsAreFull) {
   EXPECT_EQ(tiles.deep()[2], 0);
   tiles.fill_pixel(19, 15);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(tiles.deep()[i], 1) << i;
+}
+
+TEST(FullTiles, AreDeepFromTheBeginningWhereTheyAreSaidToBeFull) {
+  const PixelMask full(40, 24, [](std::size_t p) { return p != 39; });  // all but a corner
+  FullTiles tiles(40, 24, &full);
+  for (int i = 0; i < 15; ++i) EXPECT_EQ(tiles.deep()[i], i == 3 || i == 4 || i == 8 || i == 9 ? 0 : 1) << i;
+  tiles.fill_pixel(39, 0);
+  EXPECT_EQ(tiles.deep()[4], 1);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
   std::atomic<std::uint64_t> segments{0};
   tbb::enumerable_thread_specific<Worker> workers;
   Shared shared{TileLocks(out.width, out.height), {}};
-  if (layers.coverage) shared.full.emplace(out.width, out.height);
+  if (layers.coverage) shared.full.emplace(out.width, out.height, layers.full);
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
     const std::vector<std::uint32_t> order = draw_order(scene.grooms[g], view);
     AssembleJob job = make_assemble_job(scene, view, numbering, g);
@@ -104,6 +104,11 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
 std::uint64_t raster_strands(const Scene& scene, const CameraView& view, const SegmentNumbering& numbering,
                              const RasterLayers& layers, GBuffer& out, const Progress& progress) {
   clear_gbuffer(view, layers, out);
+  if (layers.coverage && layers.full)
+    layers.full->parallel_for_each([&](int x, int y) {
+      out.coverage[static_cast<std::size_t>(y) * static_cast<std::size_t>(out.width) + static_cast<std::size_t>(x)] =
+          kFullDepth;
+    });
   const AnalyticCells cells = layers.analytic ? choose_cells(scene, view) : AnalyticCells();
   const bool in_cells = cells.per_pixel > 1;
   std::uint64_t strands = 0;

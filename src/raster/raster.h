@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/pixel_mask.h"
 #include "frame/frame.h"
 #include "raster/keys.h"
 
@@ -19,7 +20,9 @@ struct RasterLayers {
   int samples = 0;            ///< 0 for none; else 1, 2, 4, 8 or 16 positions (frame/sample_positions.h)
   bool analytic = false;      ///< area and tangent: raster/analytic.h
   bool coverage = false;      ///< area alone, of thin strands, and fast: raster/coverage.h; not together with `analytic`
-  bool overdraw = false;      ///< count the fragments at the pixel's center, hidden ones too
+  const PixelMask* full =
+      nullptr;            ///< pixels that `coverage` takes as full from the beginning, and draws nothing into; or null
+  bool overdraw = false;  ///< count the fragments at the pixel's center, hidden ones too
 };
 
 /// Rasterizes every strand of `scene` into `out`: resizes and clears the layers that `layers` asks for, empties the others,
