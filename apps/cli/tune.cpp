@@ -190,7 +190,7 @@ void add_tune(CLI::App& app) {
       ->add_option("--kernel-sizes", o->kernel_sizes,
                    "Instead, sizes k as published: half of the length over the size of the hair")
       ->delimiter(',')
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(CLI::Range(1e-6, 1.0))
       ->type_name("A,B");
   filter->add_option("--aspects", o->aspects, "Aspects to try")->delimiter(',')->check(CLI::Range(0.0, 1.0))->type_name("A,B");
   filter->add_option("--falloffs", o->falloffs, "Standard deviations over half of the axes to try")

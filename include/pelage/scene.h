@@ -150,8 +150,9 @@ struct LinkSettings {
   /// k of eq. 13: half of the kernel's major axis over the size of the hair; published: 0.01. 0, the default: kernels of
   /// `kernel_radius` that adapt to the hair of each pixel (docs/derivations/linking.md).
   float kernel_size = 0;
-  float kernel_radius = 9;  ///< half of the major axis, pixels, for thin hair of one direction; read where kernel_size is 0
-  float aspect = 0.15f;     ///< ρ, its minor over its major axis, 0…1
+  float kernel_radius =
+      9;  ///< half of the major axis, pixels, for thin hair of one direction; 1 at least; read where kernel_size is 0
+  float aspect = 0.15f;  ///< ρ, its minor over its major axis, 0…1
   float falloff = 0.5f;  ///< σ∥ over the one and σ⊥ over the other half axis (Lipp 2026, eq. 9); INFINITY: as published in 2025
   float sigma_distance = INFINITY;  ///< σ_d of eq. 11, in units of r; INFINITY: all distances within the kernel count alike
   float sigma_angle = INFINITY;     ///< σ_θ of eq. 11, radians

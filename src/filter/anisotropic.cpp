@@ -68,7 +68,7 @@ AnisotropicKernel kernel_for(const PixelBox& hair, int side, const LinkSettings&
   const float radius =
       k.adapts ? settings.kernel_radius * std::pow(static_cast<float>(side), -kPixelsForSamples)
                : settings.kernel_size * std::sqrt(static_cast<float>(hair.width()) * static_cast<float>(hair.height()));
-  k.radius = std::min(radius, AnisotropicKernel::kMostRadius);
+  k.radius = std::min(k.adapts ? std::max(radius, KernelVariants::kLeastAxis) : radius, AnisotropicKernel::kMostRadius);
   k.aspect = settings.aspect;
   k.sigma_along = settings.falloff, k.sigma_across = settings.falloff;
   k.sigma_distance = settings.sigma_distance, k.sigma_angle = settings.sigma_angle, k.sigma_color = settings.sigma_color;
@@ -77,6 +77,7 @@ AnisotropicKernel kernel_for(const PixelBox& hair, int side, const LinkSettings&
 
 Buffer<Vec4> filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel) {
   PELAGE_CHECK(kernel.radius >= 0 && kernel.radius <= AnisotropicKernel::kMostRadius);
+  PELAGE_CHECK(!kernel.adapts || kernel.radius >= KernelVariants::kLeastAxis);
   PELAGE_CHECK(m.border >= kernel.reach());
   const KernelTable table(kernel, m.stride());
   const bool by_color = !std::isinf(kernel.sigma_color);

@@ -8,8 +8,6 @@
 namespace pelage {
 namespace {
 
-constexpr float kLeastAxis = 1;  // pixels; halves of it are what a pixel's own box blurs
-
 Vec4 sum(const Vec4& a, const Vec4& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
 
 }  // namespace
@@ -28,7 +26,7 @@ AnisotropicKernel KernelVariants::kernel(const AnisotropicKernel& thin, int vari
   const float major = std::max(kLeastAxis, thin.radius * std::exp2(-0.5f * static_cast<float>(variant / kShapes)));
   const float aspect = std::max(kLeastAxis, major * thin.aspect) / major;
   k.aspect = std::pow(aspect, agreement);
-  k.radius = std::min(major * std::sqrt(aspect / k.aspect), std::max(thin.radius, kLeastAxis));
+  k.radius = std::min(major * std::sqrt(aspect / k.aspect), thin.radius);
   return k;
 }
 

@@ -16,11 +16,12 @@ namespace pelage {
 /// (0 not at all … 1). For one that doesn't there is only variant 0, the kernel itself.
 ///
 /// The major axis is r·√(w₀/w) for w > w₀ = kThin: samples of thick strands are less noisy, and there is more to see of each. The
-/// minor axis is one pixel at least. Where directions differ, both change so that the ellipse becomes a circle of the same area.
+/// axes are kLeastAxis at least. Where directions differ, both change so that the ellipse becomes a circle of the same area.
 struct KernelVariants {
-  static constexpr float kThin = 0.1f;  ///< w₀, pixels
-  static constexpr int kSizes = 7;      ///< w from w₀ on, by factors of two
-  static constexpr int kShapes = 5;     ///< agreement from 0 to 1, in steps of a quarter
+  static constexpr float kThin = 0.1f;    ///< w₀, pixels
+  static constexpr float kLeastAxis = 1;  ///< of both axes, pixels; r of a kernel that adapts is no less
+  static constexpr int kSizes = 7;        ///< w from w₀ on, by factors of two
+  static constexpr int kShapes = 5;       ///< agreement from 0 to 1, in steps of a quarter
 
   static int count(const AnisotropicKernel& kernel) { return kernel.adapts ? kSizes * kShapes : 1; }
   static int of(float thickness, float agreement);

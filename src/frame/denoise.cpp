@@ -92,7 +92,7 @@ LinkInput make_input(HairSamples s, const Buffer<VisibilitySample>& visibility, 
                   width, part.begin() + y * width);
   };
   cut(visibility, layer.visibility), cut(s.depth, layer.depth), cut(s.color, layer.color);
-  cut(s.coverage, layer.coverage), cut(input.behind.depth, layer.opaque_depth);
+  cut(s.coverage, layer.coverage), cut(s.thickness, layer.thickness), cut(input.behind.depth, layer.opaque_depth);
   mark_hair(layer);
   return input;
 }

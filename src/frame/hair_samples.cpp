@@ -156,6 +156,9 @@ void check(const HairSamples& s) {
   require(s, "position", not_finite, again, [&](std::size_t p) { return s.is_hair(p) && !is_finite(s.position[p]); });
   if (!s.background.empty())
     require(s, "background", not_finite, again, [&](std::size_t p) { return !finite(s.background[p]); });
+  if (!s.thickness.empty())
+    require(s, "thickness", "is not a number ≥ 0", "the diameter of the strand in pixels",
+            [&](std::size_t p) { return s.is_hair(p) && !(s.thickness[p] >= 0 && s.thickness[p] < kNothing); });
   if (!s.coverage.empty())
     require(s, "coverage", "is not between 0 and 1", "the share of the pixel that hair covers",
             [&](std::size_t p) { return !(s.coverage[p] >= -kRounding && s.coverage[p] <= 1 + kRounding); });
@@ -204,7 +207,8 @@ const std::vector<GBufferField>& gbuffer_fields() {
       {"alpha", {"A"}, false, "opacity of pixels without hair; else 1"},
       {"background", {"R", "G", "B"}, false, "what is behind the hair; else guessed from the pixels around"},
       {"background.A", {}, false, "its opacity, with which it is premultiplied; else 1"},
-      {"coverage", {}, false, "share of the pixel that hair covers, of many samples or exact; for --alpha coverage"}};
+      {"coverage", {}, false, "share of the pixel that hair covers, of many samples or exact; for --alpha coverage"},
+      {"thickness", {}, false, "diameter of the strand, pixels: thick strands are smoothed less; 0, or without it: thin"}};
   return kFields;
 }
 
@@ -241,6 +245,7 @@ HairSamples read_hair_samples(const Image& gbuffer, const std::map<std::string, 
   read_geometry(reader, s);
   if (reader.has("background")) read_background(reader, s);
   if (reader.has("coverage")) reader.read("coverage", s.coverage);
+  if (reader.has("thickness")) reader.read("thickness", s.thickness);
   check(s);
   return s;
 }

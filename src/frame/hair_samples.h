@@ -25,6 +25,7 @@ struct HairSamples {
   Buffer<Vec3> tangent;     ///< any length, in the space of `position`
   Buffer<Vec4> background;  ///< premultiplied; or empty
   Buffer<float> coverage;   ///< share of the pixel that hair covers; or empty
+  Buffer<float> thickness;  ///< diameter of the strand, pixels; or empty
 
   bool is_hair(std::size_t p) const { return strand[p] != 0; }
   /// Two 32-bit numbers that tell strands apart.

@@ -119,9 +119,10 @@ FrameInputs with_finer_pixels(const FrameInputs& inputs, int side) {
   return {inputs.scene, inputs.meshes, inputs.rig, view, number_segments(inputs.scene, view)};
 }
 
-/// Strand linking, alpha fix and orientation-aware filter over one frame.
-Image linked(const FrameInputs& inputs, Stages& stages, Buffer<float>* nearest = nullptr) {
-  const RenderSettings& settings = inputs.scene.settings;
+/// Strand linking, alpha fix and orientation-aware filter over one frame, whose kernel is `kernel_scale` times as large.
+Image linked(const FrameInputs& inputs, Stages& stages, Buffer<float>* nearest = nullptr, float kernel_scale = 1) {
+  RenderSettings settings = inputs.scene.settings;
+  settings.link.kernel_radius *= kernel_scale;
   const int side = static_cast<int>(std::lround(std::sqrt(static_cast<float>(settings.samples))));
   const FrameInputs fine = with_finer_pixels(inputs, side);
   LinkInput input = render_strand_layer(fine, side, settings.link.alpha == LinkAlpha::kCoverage, stages);
@@ -145,11 +146,19 @@ Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages, co
   return state.history->picture();
 }
 
+/// Frames that are blended stand in for pixels under the kernel: so much smaller is it for `frames` of them. Blending forgets older
+/// ones than kMostFrames.
+float kernel_scale_for(int frames) {
+  constexpr int kMostFrames = 8;
+  return std::pow(static_cast<float>(std::min(frames, kMostFrames)), -0.25f);
+}
+
 /// TAA of frames of one sample, or of what strand linking makes of each.
 Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages) {
   if (inputs.scene.settings.method == Method::kLinkTaa)
-    return temporal(inputs, state, stages,
-                    [&](const FrameInputs& frame, Buffer<float>& depth) { return linked(frame, stages, &depth); });
+    return temporal(inputs, state, stages, [&](const FrameInputs& frame, Buffer<float>& depth) {
+      return linked(frame, stages, &depth, kernel_scale_for(inputs.scene.settings.frames));
+    });
   return temporal(inputs, state, stages, [&](const FrameInputs& frame, Buffer<float>& depth) {
     return render_frame(frame, kPixelCenter, stages, &depth);
   });

@@ -45,7 +45,8 @@ class PixelWriter {
                                    "background.R",
                                    "background.G",
                                    "background.B",
-                                   "background.A"};
+                                   "background.A",
+                                   "thickness"};
     if (!input_.layer.coverage.empty()) names.emplace_back("coverage");
     return names;
   }
@@ -73,6 +74,7 @@ class PixelWriter {
     }
     out = put(out, back_color);
     *out++ = back.w;
+    *out++ = p ? input_.layer.thickness[*p] : 0;
     if (!input_.layer.coverage.empty()) *out = p ? input_.layer.coverage[*p] : 0;
   }
 

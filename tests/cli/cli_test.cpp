@@ -191,19 +191,24 @@ TEST_F(Cli, LinksStrands) {
 
 TEST_F(Cli, TunesTheFilter) {
   make_hair();
-  const Outcome outcome = run(
-      "tune filter hair.pelage --size 64x48 --reference-spp 16 --kernel-sizes 0,0.03,0.5 --aspects 0.3,0.6 --json -o k.svg");
+  const Outcome outcome =
+      run("tune filter hair.pelage --size 64x48 --reference-spp 16 --radii 0,4,30 --aspects 0.3,0.6 --json -o k.svg");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   ASSERT_EQ(json["kernels"].size(), 6u);
   double least = 1e9;
   for (const auto& k : json["kernels"]) least = std::min(least, k["share"].get<double>());
   for (const auto& k : json["kernels"])
-    if (k["kernel_size"] == json["best"]["kernel_size"] && k["aspect"] == json["best"]["aspect"]) {
+    if (k["kernel_radius"] == json["best"]["kernel_radius"] && k["aspect"] == json["best"]["aspect"]) {
       EXPECT_EQ(k["share"], least);
     }
   EXPECT_LT(least, json["kernels"][0]["share"].get<double>());  // not to smooth at all
   EXPECT_THAT(slurp(in("k.svg")), HasSubstr("</svg>"));
+  const Outcome published =
+      run("tune filter hair.pelage --size 64x48 --reference-spp 4 --kernel-sizes 0.01,0.03 --falloffs 0.5,1000 -o k.svg");
+  EXPECT_EQ(published.status, 0) << published.err;
+  EXPECT_THAT(published.out, HasSubstr("kernel_size"));
+  EXPECT_THAT(slurp(in("k.svg")), HasSubstr("kernel size k"));
   EXPECT_EQ(run("tune filter hair.pelage -o k.png").status, 2);
   EXPECT_EQ(run("tune filter nothing.pelage").status, 1);
 }
