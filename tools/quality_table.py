@@ -32,9 +32,10 @@ METHODS = {  # name: (label, options of `pelage render`)
     "link": ("link, count", ["--method", "link", "--spp", "1", "--alpha", "count"]),
     "link-coverage": ("link, coverage", ["--method", "link", "--spp", "1", "--alpha", "coverage"]),
     "link-taa": ("link-taa, 8 frames", ["--method", "link-taa", "--spp", "1", "--frames", "8"]),
+    "link-taa-coverage": ("link-taa, coverage", ["--method", "link-taa", "--spp", "1", "--frames", "8", "--alpha", "coverage"]),
     "oidn": ("OIDN", ["--method", "oidn"]),
 }
-LINKED = ("link", "link-coverage", "link-taa")
+LINKED = ("link", "link-coverage", "link-taa", "link-taa-coverage")
 RIVALS = ("one", "smaa", "fxaa", "taa", "msaa4")
 BACKGROUNDS = {"dark": "0.18,0.19,0.21", "bright": "1,1,1"}
 COLUMNS = {  # key: (head, format)
@@ -222,7 +223,7 @@ def times_of(seconds):
 
 def readme_table(results):
     """The sum of it: what linking has beside one sample, MSAA 8 and TAA, in few columns."""
-    shown = [m for m in ("one", "taa", "msaa8", "link", "link-coverage", "link-taa") if any(m in rows for rows in results.values())]
+    shown = [m for m in ("one", "taa", "msaa8", "link", "link-coverage", "link-taa", "link-taa-coverage") if any(m in rows for rows in results.values())]
     lines = [markdown_row(["hair pixels", *(METHODS[m][0] for m in shown)]), markdown_row(["---"] * (len(shown) + 1))]
     for subject, rows in results.items():
         for key in ("mse", "flip", "psnr_flyaway", "continuity"):
