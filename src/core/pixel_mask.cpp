@@ -46,6 +46,30 @@ PixelMask PixelMask::grown(int reach) const {
   return result;
 }
 
+PixelMask PixelMask::shrunk(int reach) const {
+  PixelMask narrow(width_, height_), result(width_, height_);
+  std::vector<std::uint64_t> row(stride_);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y) {
+    std::uint64_t* const out = &narrow.words_[y * stride_];
+    std::copy_n(&words_[y * stride_], stride_, out);
+    for (int step = 0; step < reach; ++step) {
+      std::copy_n(out, stride_, row.begin());
+      for (std::size_t w = 0; w < stride_; ++w) {
+        const std::uint64_t before = w > 0 ? row[w - 1] >> (kBits - 1) : 0,
+                            after = w + 1 < stride_ ? row[w + 1] << (kBits - 1) : 0;
+        out[w] &= (row[w] << 1 | before) & (row[w] >> 1 | after);
+      }
+    }
+  }
+  for (int y = reach; y < height_ - reach; ++y)
+    for (std::size_t w = 0; w < stride_; ++w) {
+      std::uint64_t all = ~std::uint64_t{0};
+      for (int j = y - reach; j <= y + reach; ++j) all &= narrow.words_[static_cast<std::size_t>(j) * stride_ + w];
+      result.words_[static_cast<std::size_t>(y) * stride_ + w] = all;
+    }
+  return result;
+}
+
 template <class Combine>
 PixelMask PixelMask::combined(const PixelMask& other, const Combine& combine) const {
   PELAGE_CHECK(width_ == other.width_ && height_ == other.height_);

@@ -52,6 +52,8 @@ class PixelMask {
 
   /// The pixels within `reach` ≥ 0 pixels in x and in y of one that is in the set.
   PixelMask grown(int reach) const;
+  /// The pixels around which all within `reach` ≥ 0 pixels in x and in y are in the set and in the picture.
+  PixelMask shrunk(int reach) const;
   /// Those of this set that are not in `other`, that are, and those of both; all of the same size.
   PixelMask without(const PixelMask& other) const;
   PixelMask intersected(const PixelMask& other) const;

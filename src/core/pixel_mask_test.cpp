@@ -56,6 +56,21 @@ TEST(PixelMask, GivesBitsOfARow) {
       }
 }
 
+TEST(PixelMask, ShrinksToPixelsThatHaveAllAroundThem) {
+  for (const int width : {1, 63, 64, 65, 130, 140})
+    for (const int reach : {0, 1, 2, 5, 11}) {
+      const PixelMask mask = random_mask(width, 19, 0.98f, static_cast<std::uint32_t>(width));
+      Pixels expected;
+      for (const auto& [y, x] : pixels_of(mask)) {
+        bool all = true;
+        for (int j = y - reach; j <= y + reach; ++j)
+          for (int i = x - reach; i <= x + reach; ++i) all = all && mask.contains(i, j);
+        if (all) expected.insert({y, x});
+      }
+      EXPECT_EQ(pixels_of(mask.shrunk(reach)), expected) << width << " " << reach;
+    }
+}
+
 TEST(PixelMask, GrowsByPixelsInXAndY) {
   for (const int width : {1, 63, 64, 65, 130})
     for (const int reach : {0, 1, 2, 5}) {

@@ -21,43 +21,48 @@ constexpr float kPixelsForSamples = 0.6f;
 struct PixelSum {
   float color[4] = {}, weight = 0;
 
-  void add(const Vec4& c, float w) {
-    color[0] += c.x, color[1] += c.y, color[2] += c.z, color[3] += c.w;
-    weight += w;
-  }
   void add(const Vec4& c, float hair, float w) {
     color[0] += c.x * w, color[1] += c.y * w, color[2] += c.z * w, color[3] += c.w * w;
     weight += hair * w;
   }
+  /// Two pixels of one weight.
+  void add(const Vec4& a, const Vec4& b, float w) {
+    color[0] += (a.x + b.x) * w, color[1] += (a.y + b.y) * w, color[2] += (a.z + b.z) * w, color[3] += (a.w + b.w) * w;
+  }
+  Vec4 mean() const {
+    const float scale = 1 / weight;
+    return {color[0] * scale, color[1] * scale, color[2] * scale, color[3] * scale};
+  }
 };
 
-Vec4 mean(const PixelSum& a, const PixelSum& b) {
-  const float scale = 1 / (a.weight + b.weight);
-  return {(a.color[0] + b.color[0]) * scale, (a.color[1] + b.color[1]) * scale, (a.color[2] + b.color[2]) * scale,
-          (a.color[3] + b.color[3]) * scale};
-}
-
-/// The mean of all under a kernel whose weights are 1. Pixels without hair are 0 in all, so that nobody has to ask.
-Vec4 flat_mean(const Vec4* color, const float* weight, const KernelTaps& taps) {
-  PixelSum before, after;
-  before.add(*color, *weight);
-  for (const std::int32_t offset : taps.offset) {
-    before.add(color[-offset], weight[-offset]);
-    after.add(color[offset], weight[offset]);
+/// The mean under a kernel that is the same on either side. Pixels without hair are 0 in all, so that nobody has to ask; where
+/// there are none, `inside` says so, and the sum of the weights is known.
+Vec4 symmetric_mean(const Vec4* color, const float* weight, const KernelTaps& taps, bool inside) {
+  PixelSum sum;
+  sum.add(*color, *weight, 1);
+  if (inside) {
+    for (std::size_t i = 0; i < taps.offset.size(); ++i) sum.add(color[-taps.offset[i]], color[taps.offset[i]], taps.weight[i]);
+    sum.weight = taps.sum;
+    return sum.mean();
   }
-  return mean(before, after);
+  for (std::size_t i = 0; i < taps.offset.size(); ++i) {
+    const std::int32_t offset = taps.offset[i];
+    sum.add(color[-offset], color[offset], taps.weight[i]);
+    sum.weight += (weight[-offset] + weight[offset]) * taps.weight[i];
+  }
+  return sum.mean();
 }
 
-Vec4 weighted_mean(const Vec4* color, const float* weight, std::span<const std::int32_t> offsets, const float* before_weights,
-                   const float* after_weights) {
-  PixelSum before, after;
-  before.add(*color, *weight);
+/// The mean under a kernel that depends on color.
+Vec4 mean_by_color(const Vec4* color, const float* weight, std::span<const std::int32_t> offsets, const ColorWeights& weights) {
+  PixelSum sum;
+  sum.add(*color, *weight, 1);
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     const std::int32_t offset = offsets[i];
-    before.add(color[-offset], weight[-offset], before_weights[i]);
-    after.add(color[offset], weight[offset], after_weights[i]);
+    sum.add(color[-offset], weight[-offset], weights.before[i]);
+    sum.add(color[offset], weight[offset], weights.after[i]);
   }
-  return mean(before, after);
+  return sum.mean();
 }
 
 }  // namespace
@@ -81,6 +86,7 @@ Buffer<Vec4> filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel)
   PELAGE_CHECK(m.border >= kernel.reach());
   const KernelTable table(kernel, m.stride());
   const bool by_color = !std::isinf(kernel.sigma_color);
+  const PixelMask inside = m.hair.shrunk(kernel.reach());
   Buffer<Vec4> out(m.color.size());
   parallel_for(static_cast<std::size_t>(m.height), PixelMask::kRowsPerTask, [&](std::size_t first, std::size_t last) {
     ColorWeights colors(by_color ? table.most_pairs() : 0);
@@ -96,13 +102,11 @@ Buffer<Vec4> filter_anisotropic(const Matte& m, const AnisotropicKernel& kernel)
         return;
       }
       const KernelTaps taps = table.of(choice);
-      if (table.flat()) {
-        out[p] = flat_mean(color, weight, taps);
-      } else if (by_color) {
+      if (by_color) {
         colors.weigh(color, taps, table.terms());
-        out[p] = weighted_mean(color, weight, taps.offset, colors.before.data(), colors.after.data());
+        out[p] = mean_by_color(color, weight, taps.offset, colors);
       } else {
-        out[p] = weighted_mean(color, weight, taps.offset, taps.weight.data(), taps.weight.data());
+        out[p] = symmetric_mean(color, weight, taps, inside.contains(x, y));
       }
     });
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 
@@ -51,10 +52,7 @@ Vec2 DirectionCells::middle(int cell) {
   return MeanDirection::halved({share, (turned < 2 ? 1 : -1) * (1 - std::fabs(share))});
 }
 
-KernelTable::KernelTable(const AnisotropicKernel& kernel, std::size_t stride)
-    : terms_(terms_of(kernel)),
-      flat_(std::isinf(kernel.sigma_distance) && std::isinf(kernel.sigma_angle) && std::isinf(kernel.sigma_color) &&
-            std::isinf(kernel.sigma_along) && std::isinf(kernel.sigma_across)) {
+KernelTable::KernelTable(const AnisotropicKernel& kernel, std::size_t stride) : terms_(terms_of(kernel)) {
   constexpr auto directions = static_cast<std::size_t>(DirectionCells::kDirections);
   std::vector<Pairs> by_cell(static_cast<std::size_t>(KernelVariants::count(kernel)) * directions);
   parallel_for(by_cell.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -68,6 +66,7 @@ KernelTable::KernelTable(const AnisotropicKernel& kernel, std::size_t stride)
     first_.push_back(offset_.size());
     offset_.insert(offset_.end(), pairs.offset.begin(), pairs.offset.end());
     weight_.insert(weight_.end(), pairs.weight.begin(), pairs.weight.end());
+    sum_.push_back(1 + 2 * std::accumulate(pairs.weight.begin(), pairs.weight.end(), 0.f));
   }
   first_.push_back(offset_.size());
 }

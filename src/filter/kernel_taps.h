@@ -35,6 +35,7 @@ struct DirectionCells {
 struct KernelTaps {
   std::span<const std::int32_t> offset;  ///< in pixels of a row-major picture; the other one of the pair is at −offset
   std::span<const float> weight;         ///< but for the term of color, of which the pixel in the middle has 1
+  float sum;                             ///< of the weights of all pixels, the one in the middle, too
 };
 
 /// The pixels of a kernel's variants for every direction.
@@ -47,20 +48,17 @@ class KernelTable {
   KernelTaps of(const KernelChoice& choice) const {
     const auto cell = static_cast<std::size_t>(choice.variant * DirectionCells::kDirections + choice.direction);
     const std::size_t first = first_[cell], count = first_[cell + 1] - first;
-    return {std::span(offset_).subspan(first, count), std::span(weight_).subspan(first, count)};
+    return {std::span(offset_).subspan(first, count), std::span(weight_).subspan(first, count), sum_[cell]};
   }
   /// The most pairs that a choice has.
   std::size_t most_pairs() const;
   const kernel::FilterKernel& terms() const { return terms_; }
-  /// Whether all weights are 1.
-  bool flat() const { return flat_; }
 
  private:
   kernel::FilterKernel terms_;
-  bool flat_;
   std::vector<std::size_t> first_;  // by variant and direction
   std::vector<std::int32_t> offset_;
-  std::vector<float> weight_;
+  std::vector<float> weight_, sum_;  // the latter by variant and direction, too
 };
 
 }  // namespace pelage

@@ -61,8 +61,7 @@ Buffer<float> cover(const FrameInputs& inputs, const Buffer<PixelKey>& center, G
                     const Progress& progress) {
   const int width = inputs.view.width, height = inputs.view.height;
   const PixelMask hit(width, height, [&](std::size_t p) { return center[p] != kEmptyPixel; });
-  const PixelMask missed(width, height, [&](std::size_t p) { return center[p] == kEmptyPixel; });
-  const PixelMask dense = hit.without(missed.grown(kDenseReach));
+  const PixelMask dense = hit.shrunk(kDenseReach);
   segments = raster_strands(inputs.scene, inputs.view, inputs.numbering, {.center = false, .coverage = true, .full = &dense},
                             area, progress);
   Buffer<float> covered(area.coverage.size());
