@@ -32,6 +32,10 @@ class FullTiles {
   void fill_pixel(int x, int y);
   /// [across()·down()] by tile, 1 where the tile and the eight around it are full; it may lag behind.
   const std::int32_t* deep() const { return deep_.get(); }
+  /// deep()[tile], while other threads fill pixels.
+  std::int32_t deep_at(std::int32_t tile) const {
+    return std::atomic_ref(deep_[static_cast<std::size_t>(tile)]).load(std::memory_order_relaxed);
+  }
   int across() const { return across_; }
   int down() const { return down_; }
 

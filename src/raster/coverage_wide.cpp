@@ -33,7 +33,7 @@ Mask reaching_open(const ScreenBlock& block, std::size_t j, const FullTiles& til
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR
   HWY_ALIGN std::int32_t at[hn::MaxLanes(wide::IntTag())], deep[hn::MaxLanes(wide::IntTag())];
   hn::Store(index, kInt, at);
-  for (std::size_t l = 0; l < hn::Lanes(kInt); ++l) deep[l] = tiles.deep()[at[l]];
+  for (std::size_t l = 0; l < hn::Lanes(kInt); ++l) deep[l] = tiles.deep_at(at[l]);
   const auto flags = hn::Load(kInt, deep);
 #else
   const auto flags = hn::GatherIndex(kInt, tiles.deep(), index);
