@@ -284,17 +284,38 @@ def write_dual(pelage, folder, cases):
     return table
 
 
+def program(path):
+    """The absolute path of a program that is there."""
+    found = str(pathlib.Path(path).resolve())
+    if not os.access(found, os.X_OK):
+        raise SystemExit(f"{found} is no program; build it first, or name it with --pelage")
+    return found
+
+
+def run(main):
+    """main(), of a tool that keeps what it has made."""
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit("stopped; the same command goes on from here")
+
+
+def put_into_readme(mark, told):
+    """Puts `told` between <!-- mark --> and <!-- /mark --> of README.md."""
+    readme = ROOT / "README.md"
+    text, count = re.subn(rf"(<!-- {mark} -->\n).*?(<!-- /{mark} -->)", lambda m: m[1] + told + m[2], readme.read_text(), flags=re.S)
+    if count != 1:
+        raise SystemExit(f"README.md lacks the marks <!-- {mark} --> and <!-- /{mark} -->")
+    readme.write_text(text)
+
+
 def write_readme(table, cases, options):
-    """Puts the table, and what it was made of, between the two marks of README.md."""
+    """The table, and what it was made of."""
     styles = ", ".join(dict.fromkeys(case.axes["hairstyle"] for case in cases))
     strands = f"{options.strands} strands" if options.strands else "the strands of assets/scenes"
     told = (f"Means over {len(cases)} cases ({styles}) on hair pixels, {options.size}×{options.size} pixels, {strands}, against "
             f"{options.samples} paths a pixel:\n\n{table}\n")
-    readme = ROOT / "README.md"
-    text, count = re.subn(r"(<!-- demo report -->\n).*?(<!-- /demo report -->)", lambda m: m[1] + told + m[2], readme.read_text(), flags=re.S)
-    if count != 1:
-        raise SystemExit("README.md lacks the marks <!-- demo report --> and <!-- /demo report -->")
-    readme.write_text(text)
+    put_into_readme("demo report", told)
 
 
 def main():
@@ -316,9 +337,7 @@ def main():
     options.samples = options.samples or (16 if options.quick else 256)
     options.dual_samples = max(1, options.samples // 4)
     folder = pathlib.Path(options.out).resolve()
-    pelage = str(pathlib.Path(options.pelage).resolve())
-    if not os.access(pelage, os.X_OK):
-        raise SystemExit(f"{pelage} is no program; build it first, or name it with --pelage")
+    pelage = program(options.pelage)
     cases = [c for c in all_cases(options.quick, options.dual) if re.search(options.only, c.name)]
     if not cases:
         raise SystemExit(f"no case matches {options.only}")

@@ -17,9 +17,8 @@ import random
 import re
 import struct
 import subprocess
-import sys
 
-from demo_report import ROOT, Failure, Method, Workshop, machine
+from demo_report import ROOT, Failure, Method, Workshop, machine, program, run
 from reference_cache import ReferenceCache
 
 SAMPLES = (1, 4, 9, 16)
@@ -205,9 +204,7 @@ def main():
     options.size = options.size or ("96x54" if options.quick else "960x540")
     options.strands = options.strands or (400 if options.quick else 50000)
     options.reference_spp = options.reference_spp or (4 if options.quick else 256)
-    folder, pelage = pathlib.Path(options.out).resolve(), str(pathlib.Path(options.pelage).resolve())
-    if not os.access(pelage, os.X_OK):
-        raise SystemExit(f"{pelage} is no program; build it first, or name it with --pelage")
+    folder, pelage = pathlib.Path(options.out).resolve(), program(options.pelage)
     cases = [c for c in all_cases() if re.search(options.only, c.name)]
     if not cases:
         raise SystemExit(f"no case matches {options.only}")
@@ -226,7 +223,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except KeyboardInterrupt:
-        sys.exit("stopped; the same command goes on from here")
+    run(main)

@@ -19,7 +19,7 @@ import subprocess
 import sys
 import time
 
-from demo_report import ROOT, Failure, Workshop
+from demo_report import ROOT, Failure, Workshop, program, put_into_readme, run
 from reference_cache import ReferenceCache
 
 METHODS = {  # name: (label, options of `pelage render`)
@@ -236,21 +236,19 @@ def readme_table(results):
     return "\n".join(lines) + f"\n\nGoals that are met: {told}.\n"
 
 
+def references_of(options):
+    return "references as given" if options.references else f"references of {options.reference_spp} samples"
+
+
 def write_readme(results, options):
-    """Puts the table between the two marks of README.md."""
-    samples = "references as given" if options.references else f"references of {options.reference_spp} samples"
+    """The sum of the tables, and what it was made of."""
     told = (f"One sample a pixel made whole beside other methods (`tools/quality_table.py --readme`), {options.size.replace('x', '×')}, grown grooms of "
-            f"{options.strands:,} strands, {samples}:\n\n{readme_table(results)}")
-    readme = ROOT / "README.md"
-    text, count = re.subn(r"(<!-- link quality -->\n).*?(<!-- /link quality -->)", lambda m: m[1] + told + m[2], readme.read_text(), flags=re.S)
-    if count != 1:
-        raise SystemExit("README.md lacks the marks <!-- link quality --> and <!-- /link quality -->")
-    readme.write_text(text)
+            f"{options.strands:,} strands, {references_of(options)}:\n\n{readme_table(results)}")
+    put_into_readme("link quality", told)
 
 
 def write_results(folder, results, seconds, options):
-    samples = "references as given" if options.references else f"references of {options.reference_spp} samples"
-    text = [f"# Strand linking beside other methods\n\n{options.size.replace('x', ' × ')} pixels, {samples}; hair pixels; MSE scene-linear, PSNR and FLIP "
+    text = [f"# Strand linking beside other methods\n\n{options.size.replace('x', ' × ')} pixels, {references_of(options)}; hair pixels; MSE scene-linear, PSNR and FLIP "
             "as displayed, over the dark background; light: mean on hair pixels against the reference's."]
     for name, rows in results.items():
         text += [f"## {name}", table_of(rows), verdicts_of(rows), times_of(seconds[name])]
@@ -288,9 +286,7 @@ def parse_options():
 
 def main():
     options = parse_options()
-    pelage = str(pathlib.Path(options.pelage).resolve())
-    if not os.access(pelage, os.X_OK):
-        raise SystemExit(f"{pelage} is no program; build it first, or name it with --pelage")
+    pelage = program(options.pelage)
     chosen = subjects(options)
     if not chosen:
         raise SystemExit(f"no groom matches {options.only}")
@@ -308,7 +304,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except KeyboardInterrupt:
-        sys.exit("stopped; the same command goes on from here")
+    run(main)

@@ -158,7 +158,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->check(CLI::Range(0.0, 64.0))
       ->type_name("PIXELS");
   verb.add_option("--kernel-size", o.kernel_size,
-                  "link: half of the filter's length over the size of the hair, as published; not given: --kernel-radius")
+                  "link: half of the filter's length over the size of the hair, for all pixels; not given: --kernel-radius")
       ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--depth-sigma", o.depth_sigma,
                   "link: of strands that fit, those this share of the distance behind the nearest count less; 0: not at all")

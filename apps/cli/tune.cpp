@@ -188,7 +188,7 @@ void add_tune(CLI::App& app) {
       ->type_name("A,B");
   filter
       ->add_option("--kernel-sizes", o->kernel_sizes,
-                   "Instead, sizes k as published: half of the length over the size of the hair")
+                   "Instead, sizes k of eq. 13: half of the length over the size of the hair")
       ->delimiter(',')
       ->check(CLI::Range(1e-6, 1.0))
       ->type_name("A,B");

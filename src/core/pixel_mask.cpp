@@ -1,5 +1,7 @@
 #include "core/pixel_mask.h"
 
+#include <functional>
+
 #include "core/check.h"
 
 namespace pelage {
@@ -21,7 +23,8 @@ std::uint64_t PixelMask::bits(int x, int y, int count) const {
   return count < kBits ? found & ((std::uint64_t{1} << count) - 1) : found;
 }
 
-PixelMask PixelMask::grown(int reach) const {
+template <class Combine>
+PixelMask PixelMask::combined_around(int reach, const Combine& combine) const {
   PixelMask wide(width_, height_), result(width_, height_);
   if (stride_ == 0) return result;
   const std::uint64_t last_word = width_ % kBits ? bit(width_) - 1 : ~std::uint64_t{0};
@@ -32,43 +35,27 @@ PixelMask PixelMask::grown(int reach) const {
     for (int step = 0; step < reach; ++step) {
       std::copy_n(out, stride_, row.begin());
       for (std::size_t w = 0; w < stride_; ++w) {
-        out[w] |= row[w] << 1 | row[w] >> 1;
-        if (w > 0) out[w] |= row[w - 1] >> (kBits - 1);
-        if (w + 1 < stride_) out[w] |= row[w + 1] << (kBits - 1);
+        const std::uint64_t left = w > 0 ? row[w - 1] >> (kBits - 1) : 0,
+                            right = w + 1 < stride_ ? row[w + 1] << (kBits - 1) : 0;
+        out[w] = combine(row[w], combine(row[w] << 1 | left, row[w] >> 1 | right));
       }
       out[stride_ - 1] &= last_word;
     }
   }
   for (int y = 0; y < height_; ++y)
-    for (int j = std::max(0, y - reach); j <= std::min(height_ - 1, y + reach); ++j)
-      for (std::size_t w = 0; w < stride_; ++w)
-        result.words_[static_cast<std::size_t>(y) * stride_ + w] |= wide.words_[static_cast<std::size_t>(j) * stride_ + w];
-  return result;
-}
-
-PixelMask PixelMask::shrunk(int reach) const {
-  PixelMask narrow(width_, height_), result(width_, height_);
-  std::vector<std::uint64_t> row(stride_);
-  for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y) {
-    std::uint64_t* const out = &narrow.words_[y * stride_];
-    std::copy_n(&words_[y * stride_], stride_, out);
-    for (int step = 0; step < reach; ++step) {
-      std::copy_n(out, stride_, row.begin());
-      for (std::size_t w = 0; w < stride_; ++w) {
-        const std::uint64_t before = w > 0 ? row[w - 1] >> (kBits - 1) : 0,
-                            after = w + 1 < stride_ ? row[w + 1] << (kBits - 1) : 0;
-        out[w] &= (row[w] << 1 | before) & (row[w] >> 1 | after);
-      }
-    }
-  }
-  for (int y = reach; y < height_ - reach; ++y)
     for (std::size_t w = 0; w < stride_; ++w) {
-      std::uint64_t all = ~std::uint64_t{0};
-      for (int j = y - reach; j <= y + reach; ++j) all &= narrow.words_[static_cast<std::size_t>(j) * stride_ + w];
+      const auto word_of = [&](int j) {
+        return j >= 0 && j < height_ ? wide.words_[static_cast<std::size_t>(j) * stride_ + w] : std::uint64_t{0};
+      };
+      std::uint64_t all = word_of(y);
+      for (int j = 1; j <= reach; ++j) all = combine(all, combine(word_of(y - j), word_of(y + j)));
       result.words_[static_cast<std::size_t>(y) * stride_ + w] = all;
     }
   return result;
 }
+
+PixelMask PixelMask::grown(int reach) const { return combined_around(reach, std::bit_or<std::uint64_t>()); }
+PixelMask PixelMask::shrunk(int reach) const { return combined_around(reach, std::bit_and<std::uint64_t>()); }
 
 template <class Combine>
 PixelMask PixelMask::combined(const PixelMask& other, const Combine& combine) const {

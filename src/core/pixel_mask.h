@@ -79,6 +79,9 @@ class PixelMask {
   int row(std::size_t p) const { return static_cast<int>(p / static_cast<std::size_t>(width_)); }
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x / kBits); }
   std::uint64_t word(int x, int y) const { return words_[index(x, y)]; }
+  /// Every pixel with all within `reach` in x and y, of which those outside the picture are not in the set.
+  template <class Combine>
+  PixelMask combined_around(int reach, const Combine& combine) const;
   template <class Combine>
   PixelMask combined(const PixelMask& other, const Combine& combine) const;
 

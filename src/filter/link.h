@@ -28,8 +28,8 @@ struct Links {
 /// The box around layer.hair, in screen pixels of the layer.
 PixelBox screen_box(const StrandLayer& layer);
 
-/// Fills empty pixels of `layer` with the strands that pass through them. A filled pixel has the color and the thickness of the sample that its
-/// walk began at, and the depth, tangent and place of the strand where it is.
+/// Fills empty pixels of `layer` with the strands that pass through them. A filled pixel has the color and the thickness of the
+/// sample that its walk began at, and the depth, tangent and place of the strand where it is.
 ///
 /// A walk ends at the strand's end, outside the layer, or in a pixel that a sample has hit; it goes on, without filling, where
 /// the opaque scene is in front. Of several walks through a pixel the one with the best score fills it, then the nearest, then

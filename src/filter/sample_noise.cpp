@@ -54,6 +54,6 @@ float color_noise(const HairSamples& s) {
   return static_cast<float>(std::min(1.0, ratio));
 }
 
-float radius_for_noise(float noise) { return 1 + 1.1f * noise; }
+float kernel_scale_for_noise(float noise) { return 1 + 1.1f * noise; }
 
 }  // namespace pelage

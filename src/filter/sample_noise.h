@@ -12,6 +12,6 @@ float color_noise(const HairSamples& samples);
 
 /// How many times as long as for opacity the orientation-aware filter has to be to bring colors of this noise nearest to those of many
 /// samples: docs/denoise.md has the measurements that it is fitted to.
-float radius_for_noise(float noise);
+float kernel_scale_for_noise(float noise);
 
 }  // namespace pelage

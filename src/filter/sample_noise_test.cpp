@@ -52,8 +52,8 @@ TEST(ColorNoise, SameBitsForAnyThreads) {
 }
 
 TEST(RadiusForNoise, GrowsWithNoiseAndShrinksWithSamples) {
-  EXPECT_EQ(radius_for_noise(0), 1);
-  EXPECT_NEAR(radius_for_noise(1), 2.1, 1e-6);
+  EXPECT_EQ(kernel_scale_for_noise(0), 1);
+  EXPECT_NEAR(kernel_scale_for_noise(1), 2.1, 1e-6);
 }
 
 }  // namespace

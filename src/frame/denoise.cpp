@@ -219,7 +219,7 @@ DenoiseResult denoise(const Image& gbuffer, const DenoiseSettings& settings, con
   RenderSettings how;
   how.link = settings.link;
   float color_scale = 1;
-  if (how.link.filter && how.link.kernel_size == 0) color_scale = radius_for_noise(result.noise);
+  if (how.link.filter && how.link.kernel_size == 0) color_scale = kernel_scale_for_noise(result.noise);
   if (how.link.filter && result.hair_pixels > 0) {
     result.radius = kernel_for(screen_box(input.layer), side, how.link).radius;
     result.color_radius = color_scale * result.radius;
