@@ -135,7 +135,7 @@ enum class Method {
 /// Where the opacity of hair that strand linking has found comes from.
 enum class LinkAlpha {
   kCount,     ///< hit over hit and filled pixels of each segment; Huang 2025, eq. 8
-  kCoverage,  ///< exact area of the strands, by another layer of raster: better, and about as long again as raster
+  kCoverage,  ///< exact area of the strands, by another layer of raster: better, and about five times as long as raster
   kNone,      ///< none: linked strands are as opaque as others, to see what alpha fix is worth
 };
 
