@@ -1,0 +1,21 @@
+// In place of the whole sub-module where a build leaves it out: every entry point says how to have it.
+#include <pelage/error.h>
+#include <pelage/hair_mesh.h>
+
+namespace pelage {
+namespace {
+
+[[noreturn]] void left_out(const std::string& where) {
+  throw Error(where, "", "this build of Pelage has no hair meshes", "build it with -D PELAGE_HAIRMESH=ON");
+}
+
+}  // namespace
+
+void validate(const HairMesh&, const std::string& where) { left_out(where); }
+const std::vector<std::string>& style_operator_names() { left_out("hair mesh"); }
+std::uint64_t strand_count(const HairMesh&) { left_out("hair mesh"); }
+Bounds bounds(const HairMesh&) { left_out("hair mesh"); }
+StrandSet expand(const HairMesh&, const ExpandSettings&, const Progress&) { left_out("hair mesh"); }
+std::size_t resident_bytes(const HairMesh&) { left_out("hair mesh"); }
+
+}  // namespace pelage
