@@ -16,12 +16,13 @@ namespace pelage {
 
 /// One step of how a strand leaves its smooth base, a function of its place (u, v, w) in the groom and of random numbers of
 /// the strand. What the four numbers mean, and their ranges, stands with each kind; numbers that a kind does not name are 0.
-/// `start` is the w from which the operator sets in: its strength grows smoothly from 0 there to 1 at the tip (0.5 for clump).
+/// `start` 0…1 is the w from which the operator sets in: its strength grows smoothly from 0 there to 1 a quarter of the strand
+/// farther on; that of clump and taper at the tip.
 struct StyleOperator {
   enum class Kind : std::uint8_t {
     kLength,  ///< amount 0.05…2: longest strand as a share of the cage, straight on beyond 1; variation 0…1: the shortest
               ///< is amount·(1 − variation)
-    kClump,   ///< strands gather: amount 0…1 at the tip; frequency 1…32: clumps along each side of a bundle; start;
+    kClump,   ///< strands gather: amount 0…1 at the tip; frequency 1…32: clumps along each side of a bundle, a whole number; start;
               ///< variation 0…1: how much clumps differ
     kBraid,   ///< three locks over and under each other: amount 0…1, thickness of a lock as a share of the bundle;
               ///< frequency 0…64: crossings of one lock; start; variation 0…1: looseness
