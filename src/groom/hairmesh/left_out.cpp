@@ -15,6 +15,7 @@ void validate(const HairMesh&, const std::string& where) { left_out(where); }
 const std::vector<std::string>& style_operator_names() { left_out("hair mesh"); }
 std::uint64_t strand_count(const HairMesh&) { left_out("hair mesh"); }
 Bounds bounds(const HairMesh&) { left_out("hair mesh"); }
+Bounds bounds(const HairMesh&, const HairMesh::Bundle&) { left_out("hair mesh"); }
 StrandSet expand(const HairMesh&, const ExpandSettings&, const Progress&) { left_out("hair mesh"); }
 std::size_t resident_bytes(const HairMesh&) { left_out("hair mesh"); }
 

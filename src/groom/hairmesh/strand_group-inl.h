@@ -5,9 +5,9 @@
 
 // A place on the cage: span, and how far along it.
 struct CagePlace {
-  Float span;     // whole number
-  Float t;        // in the span; beyond 1 past the cage's end
-  int uniform;    // the span of all lanes of the group; −1 where they differ
+  Float span;   // whole number
+  Float t;      // in the span; beyond 1 past the cage's end
+  int uniform;  // the span of all lanes of the group; −1 where they differ
 };
 
 // The style of a bundle, with what its operators change.
@@ -61,8 +61,7 @@ PELAGE_LANES_FN StrandCubic strand_cubic(const BundleCage& cage, const CagePlace
   const auto coefficient = [&](std::size_t i) {
     return strand_across(cage.coefficients.data(), BundleCage::kSpan, BundleCage::kCoefficients, i, at, weight);
   };
-  for (std::size_t k = 0; k < 4; ++k)
-    cubic.c[k] = Vec3(coefficient(3 * k), coefficient(3 * k + 1), coefficient(3 * k + 2));
+  for (std::size_t k = 0; k < 4; ++k) cubic.c[k] = Vec3(coefficient(3 * k), coefficient(3 * k + 1), coefficient(3 * k + 2));
   return cubic;
 }
 
@@ -108,11 +107,12 @@ PELAGE_LANES_FN Vec2 strand_shift(const StrandStyle& style, const StrandTraits& 
     shift = shift + Vec2(load(&t.wave_x[l]), load(&t.wave_y[l])) * swing;
   }
   if (const StyleOperator* o = style.curl)
-    shift = shift + style_curl(w, Float(o->frequency), load(&t.curl_phase[l])) *
-                        (Float(o->amount) * style_onset(w, Float(o->start)));
+    shift = shift +
+            style_curl(w, Float(o->frequency), load(&t.curl_phase[l])) * (Float(o->amount) * style_onset(w, Float(o->start)));
   if (const StyleOperator* o = style.noise)
-    shift = shift + style_noise(Vec3(load(&t.groom_u[l]), load(&t.groom_v[l]), w), Float(o->frequency), load(&t.noise_phase[l])) *
-                        (Float(o->amount) * style_onset(w, Float(o->start)));
+    shift =
+        shift + style_noise(Vec3(load(&t.groom_u[l]), load(&t.groom_v[l]), w), Float(o->frequency), load(&t.noise_phase[l])) *
+                    (Float(o->amount) * style_onset(w, Float(o->start)));
   if (const StyleOperator* o = style.frizz)
     shift = shift + style_frizz(w, Float(o->frequency), Vec3(load(&t.frizz_a[l]), load(&t.frizz_b[l]), load(&t.frizz_c[l]))) *
                         (load(&t.frizz[l]) * style_onset(w, Float(o->start)));
@@ -120,8 +120,8 @@ PELAGE_LANES_FN Vec2 strand_shift(const StrandStyle& style, const StrandTraits& 
 }
 
 // First pass: every control point of the strands in lanes l …, from the base spline and the style.
-PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& style, const StrandTraits& traits,
-                                   std::size_t l, float shortest, float longest, StrandGroup& g) {
+PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& style, const StrandTraits& traits, std::size_t l,
+                                   float shortest, float longest, StrandGroup& g) {
   const float spans = static_cast<float>(cage.spans), last = spans - 1;
   const auto span_at = [&](float w) { return std::min(std::floor(w * spans), last); };
   const Float length = load(&traits.length[l]), root_width(cage.mesh->width);
@@ -150,8 +150,7 @@ PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& st
       p = p + normal * shift.x + binormal * shift.y;
     }
     Float width = root_width;
-    if (style.taper)
-      width = root_width * style_taper(Float(t), Float(style.taper->start), load(&traits.tip_width[l]));
+    if (style.taper) width = root_width * style_taper(Float(t), Float(style.taper->start), load(&traits.tip_width[l]));
     const std::size_t to = i * StrandGroup::kLanes + l;
     store(p.x, &g.x[to]), store(p.y, &g.y[to]), store(p.z, &g.z[to]);
     store(width, &g.width[to]);

@@ -29,7 +29,7 @@ namespace {
 }  // namespace wide
 
 void StrandPoints(const BundleCage& cage, const StrandTraits& traits, StrandGroup& group) {
-  static_assert(hn::MaxLanes(wide::FloatTag()) <= StrandGroup::kLanes);
+  static_assert(wide::hn::MaxLanes(wide::FloatTag()) <= StrandGroup::kLanes);
   wide::strand_group(cage, traits, group);
 }
 

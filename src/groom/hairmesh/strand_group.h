@@ -17,11 +17,11 @@ struct StrandGroup {
   static constexpr std::size_t kLanes = 16;
   using Lanes = std::array<float, kLanes>;
   std::size_t strands = 0, points = 0;
-  Buffer<float> x, y, z;        ///< metres, in the space of the mesh
-  Buffer<float> tx, ty, tz;     ///< tangent of the polyline: to the next point from the previous one; unit length, or 0
-  Buffer<float> width;          ///< metres, diameter
-  Buffer<float> occlusion;      ///< 0…1
-  alignas(64) Lanes u{}, v{};   ///< the strand's place in the groom
+  Buffer<float> x, y, z;       ///< metres, in the space of the mesh
+  Buffer<float> tx, ty, tz;    ///< tangent of the polyline: to the next point from the previous one; unit length, or 0
+  Buffer<float> width;         ///< metres, diameter
+  Buffer<float> occlusion;     ///< 0…1
+  alignas(64) Lanes u{}, v{};  ///< the strand's place in the groom
 };
 
 /// Fills `group` with strands first … first + count − 1 of the bundle, 1 ≤ count ≤ kLanes, with `points` control points each

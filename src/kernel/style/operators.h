@@ -71,4 +71,6 @@ PELAGE_FN Vec2 style_braid(Vec2 uv, Float w, Float frequency, Float thickness, F
 }
 
 // Width as a share of that at the root.
-PELAGE_FN Float style_taper(Float w, Float start, Float tip) { return Float(1.0f) + (tip - Float(1.0f)) * style_growth(w, start); }
+PELAGE_FN Float style_taper(Float w, Float start, Float tip) {
+  return Float(1.0f) + (tip - Float(1.0f)) * style_growth(w, start);
+}
