@@ -1,6 +1,7 @@
 // Files in and out. Content decides the format, never the extension; a file is written whole or not at all.
 #pragma once
 
+#include <pelage/hair_mesh.h>
 #include <pelage/image.h>
 #include <pelage/progress.h>
 #include <pelage/scene.h>
@@ -47,6 +48,19 @@ struct FormatInfo {
 };
 /// The registered groom formats.
 std::vector<FormatInfo> strand_formats();
+
+/// How exactly a binary hair mesh is written. The defaults err by 4 µm on a head of hair.
+struct HairMeshPrecision {
+  bool float_positions = false;  ///< positions and tangents as 32-bit floats; otherwise 16 bits within the box of the mesh
+  bool wide_attributes = false;  ///< uvw and occlusion in 16 bits; otherwise in 8
+};
+
+/// Reads a hair mesh, binary or text. Throws Error naming byte, line or key. The result satisfies validate().
+HairMesh read_hair_mesh(const std::string& path);
+
+/// Writes `mesh`, as binary where `path` ends in `.hairmesh`, as text where in `.json` (lossless whatever `precision` says).
+/// Throws Error, also where `mesh` does not satisfy validate(); then nothing is left at `path` that was not there.
+void write_hair_mesh(const std::string& path, const HairMesh& mesh, const HairMeshPrecision& precision = {});
 
 /// OBJ, PLY, binary glTF, TressFX .tfxmesh. `scale` metres per file unit. Throws Error.
 TriangleMesh read_mesh(const std::string& path, float scale = 1, UpAxis up = UpAxis::kY);

@@ -4,6 +4,7 @@
 #include <pelage/denoise.h>
 #include <pelage/error.h>
 #include <pelage/grow.h>
+#include <pelage/hair_mesh.h>
 #include <pelage/image.h>
 #include <pelage/io.h>
 #include <pelage/metrics.h>

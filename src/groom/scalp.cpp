@@ -17,6 +17,11 @@ constexpr HairlineKnot kHairline[] = {{0.00f, 0.071f},  {0.35f, 0.070f},  {0.62f
                                       {1.28f, 0.006f},  {1.42f, -0.004f}, {1.52f, 0.010f},  {1.70f, 0.031f}, {1.90f, 0.022f},
                                       {2.12f, -0.018f}, {2.40f, -0.052f}, {2.75f, -0.068f}, {3.15f, -0.070f}};
 
+constexpr Vec3 kWhorl{-0.010f, 0, -0.050f};  // end of the parting at the crown, from above
+constexpr float kPartingFront = 0.140f;      // z of its other end, beyond the hairline, so that nothing fans out there
+
+}  // namespace
+
 float hairline_height(float azimuth) {
   for (std::size_t i = 1; i < std::size(kHairline); ++i) {
     if (azimuth > kHairline[i].azimuth) continue;
@@ -26,13 +31,8 @@ float hairline_height(float azimuth) {
   return std::end(kHairline)[-1].height;
 }
 
-constexpr Vec3 kWhorl{-0.010f, 0, -0.050f};  // end of the parting at the crown, from above
-constexpr float kPartingFront = 0.140f;      // z of its other end, beyond the hairline, so that nothing fans out there
-
-}  // namespace
-
 float hairline_distance(Vec3 p) {
-  const float azimuth = std::atan2(std::abs(p.x), p.z + 0.012f);
+  const float azimuth = std::atan2(std::abs(p.x), p.z - kHeadAxis.z);
   const float ragged = 0.004f * noise3(p * 90.f, 11u) + 0.0025f * noise3(p * 300.f, 12u);
   return p.y - hairline_height(azimuth) + ragged;
 }

@@ -5,6 +5,10 @@
 
 namespace pelage::groom {
 
+/// Height of the hairline, metres (y), at `azimuth` radians 0…π from the front of the axis through kHeadAxis.
+float hairline_height(float azimuth);
+inline constexpr Vec3 kHeadAxis{0, 0, -0.012f};
+
 /// Height above the hairline, metres; positive on the hairy side. Slightly irregular.
 float hairline_distance(Vec3 p);
 

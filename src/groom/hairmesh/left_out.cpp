@@ -1,6 +1,7 @@
 // In place of the whole sub-module where a build leaves it out: every entry point says how to have it.
 #include <pelage/error.h>
 #include <pelage/hair_mesh.h>
+#include <pelage/io.h>
 
 namespace pelage {
 namespace {
@@ -17,6 +18,8 @@ std::uint64_t strand_count(const HairMesh&) { left_out("hair mesh"); }
 Bounds bounds(const HairMesh&) { left_out("hair mesh"); }
 Bounds bounds(const HairMesh&, const HairMesh::Bundle&) { left_out("hair mesh"); }
 StrandSet expand(const HairMesh&, const ExpandSettings&, const Progress&) { left_out("hair mesh"); }
+HairMesh read_hair_mesh(const std::string& path) { left_out(path); }
+void write_hair_mesh(const std::string& path, const HairMesh&, const HairMeshPrecision&) { left_out(path); }
 std::size_t resident_bytes(const HairMesh&) { left_out("hair mesh"); }
 
 }  // namespace pelage
