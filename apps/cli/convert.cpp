@@ -1,7 +1,8 @@
-// pelage convert IN OUT: a groom or a mesh in another format, in meters and Y up.
+// pelage convert IN OUT: a groom, a hair mesh or a mesh in another format, in meters and Y up.
 #include <fmt/format.h>
 #include <pelage/pelage.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ namespace {
 
 struct Options {
   std::string in, out, format;
+  ExpandSettings expand;
+  bool exact = false;
   ImportOptions import;
 };
 
@@ -30,6 +33,22 @@ void convert_groom(const Options& options) {
   for (const std::string& sentence : lost) fmt::print(stderr, "  {}\n", sentence);
 }
 
+// To another file of hair meshes, or to the strands that it stands for.
+void convert_hair_mesh(const Options& options) {
+  const HairMesh mesh = read_hair_mesh(options.in);
+  if (options.format.empty() && (options.out.ends_with(".hairmesh") || options.out.ends_with(".json"))) {
+    write_hair_mesh(options.out, mesh, {.float_positions = options.exact, .wide_attributes = options.exact});
+    fmt::print(stderr, "{}: {} strands in {} bundles, {} bytes\n", options.out, strand_count(mesh), mesh.bundles.size(),
+               std::filesystem::file_size(options.out));
+    return;
+  }
+  ProgressLine line;
+  const StrandSet set = expand(mesh, options.expand, line.callback());
+  const std::vector<std::string> lost = write_strands(options.out, set, options.format, line.callback());
+  fmt::print(stderr, "{}: {} strands, {} points\n", options.out, set.strand_count(), set.point_count());
+  for (const std::string& sentence : lost) fmt::print(stderr, "  {}\n", sentence);
+}
+
 void convert_mesh(const Options& options) {
   const float scale = options.import.scale > 0 ? options.import.scale : 1;
   const TriangleMesh mesh = read_mesh(options.in, scale, options.import.up == UpAxis::kZ ? UpAxis::kZ : UpAxis::kY);
@@ -40,7 +59,8 @@ void convert_mesh(const Options& options) {
 void run(const Options& options) {
   switch (io::file_kind(io::ByteSource::open(options.in)).content) {
     case io::FileContent::kMesh: return convert_mesh(options);
-    case io::FileContent::kImage: throw Error(options.in, "", "an image", "convert takes grooms and meshes");
+    case io::FileContent::kImage: throw Error(options.in, "", "an image", "convert takes grooms, hair meshes and meshes");
+    case io::FileContent::kHairMesh: return convert_hair_mesh(options);
     case io::FileContent::kGroom: return convert_groom(options);
   }
 }
@@ -56,12 +76,19 @@ std::string known_formats() {
 
 void add_convert(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("convert", "Writes a groom or a mesh in another format");
-  verb->footer("Examples:\n  pelage convert hair.tfx hair.pelage\n  pelage convert model.hair model.data --scale 0.01 --up z");
-  verb->add_option("in", options->in, "Groom or mesh")->required()->type_name("FILE");
+  CLI::App* verb = app.add_subcommand("convert", "Writes a groom, a hair mesh or a mesh in another format");
+  verb->footer(
+      "Examples:\n  pelage convert hair.tfx hair.pelage\n  pelage convert model.hair model.data --scale 0.01 --up z\n"
+      "  pelage convert bob.hairmesh bob.json\n  pelage convert bob.hairmesh bob.pelage --points 127 --share 0.5");
+  verb->add_option("in", options->in, "Groom, hair mesh or mesh")->required()->type_name("FILE");
   verb->add_option("out", options->out, "File to write; its extension names the format")->required()->type_name("FILE");
   verb->add_option("--format", options->format, "Groom format to write, whatever the extension: " + known_formats())
       ->type_name("NAME");
+  verb->add_option("--points", options->expand.points, "Hair mesh to strands: control points a strand, 2 to 127")
+      ->type_name("N");
+  verb->add_option("--share", options->expand.share, "Hair mesh to strands: share of the strands of each bundle, 0 to 1")
+      ->type_name("X");
+  verb->add_flag("--exact", options->exact, "To .hairmesh: positions as floats, other values in 16 bits");
   add_import_options(*verb, options->import);
   add_machine_options(*verb);
   verb->callback([options] { run(*options); });

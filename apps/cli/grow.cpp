@@ -1,25 +1,38 @@
-// pelage grow: makes hair from a seed.
+// pelage grow: makes hair from a seed, as strands or as a hair mesh.
 #include <fmt/format.h>
+#include <pelage/error.h>
 #include <pelage/grow.h>
+#include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "io/hair_mesh_formats.h"
 #include "terminal.h"
 #include "verbs.h"
 
 namespace pelage::cli {
 namespace {
 
+struct Change {
+  const char* option;
+  std::function<void(GrowSettings&)> apply;
+};
+
 struct GrowOptions {
   std::string style, output, mesh, head_output;
+  bool hair_mesh = false, hair_mesh_schema = false;
+  float length_scale = 1;
   float mesh_scale = 1;
   UpAxis mesh_up = UpAxis::kY;
-  std::vector<std::function<void(GrowSettings&)>> changes;  // to the style's defaults, as typed
+  std::vector<Change> changes;  // to the style's defaults, as typed
 };
 
 using OptionsPtr = std::shared_ptr<GrowOptions>;
@@ -29,7 +42,11 @@ template <class T>
 void add_setting(CLI::App& verb, const OptionsPtr& options, const char* name, T GrowSettings::*field, const char* type,
                  const char* help) {
   verb.add_option_function<T>(
-          name, [options, field](T value) { options->changes.push_back([=](GrowSettings& s) { s.*field = value; }); }, help)
+          name,
+          [options, field, name](T value) {
+            options->changes.push_back({name, [=](GrowSettings& s) { s.*field = value; }});
+          },
+          help)
       ->type_name(type)
       ->group("Hair");
 }
@@ -66,11 +83,50 @@ void add_settings(CLI::App& verb, const OptionsPtr& options) {
 
 GrowSettings settings_of(const GrowOptions& options) {
   GrowSettings settings = grow_defaults(hair_style_from_name(options.style));
-  for (const auto& change : options.changes) change(settings);
+  for (const Change& change : options.changes) change.apply(settings);
   return settings;
 }
 
+// The settings of a hair mesh that go by the same words.
+HairMeshSettings hair_mesh_settings_of(const GrowOptions& options) {
+  constexpr std::array kShared{"--strands", "--seed", "--width", "--parting"};
+  HairMeshSettings settings;
+  settings.style = hair_mesh_style_from_name(options.style);
+  settings.length = options.length_scale;
+  GrowSettings words;
+  words.strands = static_cast<int>(settings.strands), words.width = settings.width, words.parting = settings.parting;
+  for (const Change& change : options.changes) {
+    if (std::none_of(kShared.begin(), kShared.end(), [&](const char* name) { return std::string(name) == change.option; }))
+      throw UsageError(change.option, "", "not a setting of hair meshes",
+                       "theirs are --strands, --seed, --width, --parting and --length-scale");
+    change.apply(words);
+  }
+  settings.strands = static_cast<std::uint32_t>(std::max(words.strands, 0));
+  settings.seed = static_cast<std::uint32_t>(words.seed);
+  settings.width = words.width, settings.parting = words.parting;
+  return settings;
+}
+
+void hair_mesh_verb(const GrowOptions& options) {
+  const HairMeshSettings settings = hair_mesh_settings_of(options);
+  if (!options.mesh.empty())
+    throw UsageError("--mesh", options.mesh, "hair meshes are made for the mannequin", "leave it away");
+  HairMesh mesh;
+  {
+    ProgressLine progress;
+    mesh = make_hair_mesh(settings, progress.callback());
+  }
+  write_hair_mesh(options.output, mesh);
+  if (!options.head_output.empty()) write_mesh(options.head_output, mannequin_head());
+  fmt::print("{}: {} strands in {} bundles, {} bytes\n", options.output, strand_count(mesh), mesh.bundles.size(),
+             std::filesystem::file_size(options.output));
+}
+
 void grow_verb(const GrowOptions& options) {
+  if (options.hair_mesh_schema) return void(fmt::print("{}", io::hair_mesh_schema()));
+  if (options.style.empty()) throw UsageError("STYLE", "", "missing", "pelage grow --help lists them");
+  if (options.output.empty()) throw UsageError("--output", "", "missing", "name the file to write");
+  if (options.hair_mesh) return hair_mesh_verb(options);
   const GrowSettings settings = settings_of(options);
   const TriangleMesh surface =
       options.mesh.empty() ? mannequin_head() : read_mesh(options.mesh, options.mesh_scale, options.mesh_up);
@@ -88,15 +144,23 @@ void grow_verb(const GrowOptions& options) {
 
 }  // namespace
 
+static std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 void add_grow(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("grow", "Make hair from a seed");
   const auto options = std::make_shared<GrowOptions>();
-  std::string styles;
-  for (const std::string& name : hair_style_names()) styles += (styles.empty() ? "" : ", ") + name;
-  verb->add_option("STYLE", options->style, "One of " + styles)->required();
-  verb->add_option("-o,--output", options->output, "Groom to write; the extension decides the format")
-      ->type_name("FILE")
-      ->required();
+  verb->add_option("STYLE", options->style,
+                   "One of " + listed(hair_style_names()) + "; with --hair-mesh one of " + listed(hair_mesh_style_names()));
+  verb->add_option("-o,--output", options->output, "Groom to write; the extension decides the format")->type_name("FILE");
+  verb->add_flag("--hair-mesh", options->hair_mesh,
+                 "Make a hair mesh, a few kilobytes from which strands are made when they are drawn: .hairmesh or .json");
+  verb->add_option("--length-scale", options->length_scale, "Hair mesh: length as a share of the style's own, 0.5 to 1.5")
+      ->type_name("X");
+  verb->add_flag("--hair-mesh-schema", options->hair_mesh_schema, "Prints the JSON schema of hair meshes as text, and stops");
   verb->add_option("--mesh", options->mesh, "Surface to grow on instead of the mannequin's scalp")->type_name("FILE");
   verb->add_option("--mesh-scale", options->mesh_scale, "Meters per unit of the mesh")->type_name("X");
   verb->add_option("--mesh-up", options->mesh_up, "Axis of the mesh that points up")
@@ -110,7 +174,8 @@ void add_grow(CLI::App& app) {
       "Examples:\n"
       "  pelage grow curly -o curly.pelage\n"
       "  pelage grow straight --strands 100000 --length 0.4 --seed 7 -o long.pelage --write-mesh head.obj\n"
-      "  pelage grow coat --mesh spot.obj --strands 200000 -o spot.pelage");
+      "  pelage grow coat --mesh spot.obj --strands 200000 -o spot.pelage\n"
+      "  pelage grow --hair-mesh bob -o bob.hairmesh");
   verb->callback([options] { grow_verb(*options); });
 }
 

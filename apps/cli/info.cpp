@@ -126,6 +126,41 @@ Json groom_info(const std::string& path, const ImportOptions& options) {
           {"notes", report.notes}};
 }
 
+Json to_json(const StyleOperator& o) {
+  return {{"kind", style_operator_names()[static_cast<std::size_t>(o.kind)]},
+          {"amount", o.amount},
+          {"frequency", o.frequency},
+          {"start", o.start},
+          {"variation", o.variation}};
+}
+
+Json hair_mesh_info(const std::string& path, const std::string& format) {
+  const HairMesh mesh = read_hair_mesh(path);
+  std::uint32_t fewest = HairMesh::kMaxLayers, most = 0;
+  for (const HairMesh::Bundle& b : mesh.bundles)
+    fewest = std::min(fewest, mesh.layers(b)), most = std::max(most, mesh.layers(b));
+  Json styles = Json::array();
+  for (const auto& style : mesh.styles) {
+    Json operators = Json::array();
+    for (const StyleOperator& o : style) operators.push_back(to_json(o));
+    styles.push_back(operators);
+  }
+  return {{"kind", "hair mesh"},
+          {"format", format},
+          {"strands", strand_count(mesh)},
+          {"bundles", mesh.bundles.size()},
+          {"columns", mesh.column_count()},
+          {"vertices", mesh.vertex_count()},
+          {"layers", {{"min", fewest}, {"max", most}}},
+          {"tangents", !mesh.tangents.empty()},
+          {"occlusion", !mesh.occlusion.empty()},
+          {"width", mesh.width},
+          {"bounds", to_json(bounds(mesh))},
+          {"styles", styles},
+          {"comment", mesh.comment},
+          {"bytes", resident_bytes(mesh)}};
+}
+
 Json mesh_info(const std::string& path, const ImportOptions& options, const std::string& format) {
   const float scale = options.scale > 0 ? options.scale : 1;
   const TriangleMesh mesh = read_mesh(path, scale, options.up == UpAxis::kZ ? UpAxis::kZ : UpAxis::kY);
@@ -154,9 +189,10 @@ Json image_info(const std::string& path, const std::string& format) {
 
 Json info(const std::string& path, const ImportOptions& options) {
   const io::FileKind kind = io::file_kind(io::ByteSource::open(path));
-  Json json = kind.content == io::FileContent::kImage  ? image_info(path, kind.format)
-              : kind.content == io::FileContent::kMesh ? mesh_info(path, options, kind.format)
-                                                       : groom_info(path, options);
+  Json json = kind.content == io::FileContent::kImage      ? image_info(path, kind.format)
+              : kind.content == io::FileContent::kMesh     ? mesh_info(path, options, kind.format)
+              : kind.content == io::FileContent::kHairMesh ? hair_mesh_info(path, kind.format)
+                                                           : groom_info(path, options);
   json["file"] = path;
   json["file_bytes"] = std::filesystem::file_size(path);
   return json;
@@ -237,10 +273,34 @@ void print_image(const Json& json) {
   if (json["non_finite"] != 0) row("note", fmt::format("{} values are not finite", grouped(json["non_finite"])));
 }
 
+// "curl amount 0.0075 frequency 8", without numbers that are 0.
+std::string operator_text(const Json& o) {
+  std::string text = o["kind"];
+  for (const char* number : {"amount", "frequency", "start", "variation"})
+    if (o[number] != 0) text += fmt::format(" {} {:.3g}", number, o[number].get<double>());
+  return text;
+}
+
+void print_hair_mesh(const Json& json) {
+  const auto least = json["layers"]["min"].get<int>(), most = json["layers"]["max"].get<int>();
+  row("strands", grouped(json["strands"]));
+  row("bundles", fmt::format("{} between {} columns", grouped(json["bundles"]), grouped(json["columns"])));
+  row("layers", least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most));
+  row("vertices", fmt::format("{}, {} tangents, {} occlusion", grouped(json["vertices"]), json["tangents"] ? "with" : "without",
+                              json["occlusion"] ? "with" : "without"));
+  row("size", bounds_text(json["bounds"]));
+  row("width", metric(json["width"]));
+  for (std::size_t s = 0; s < json["styles"].size(); ++s)
+    for (const Json& o : json["styles"][s]) row(fmt::format("style {}", s).c_str(), operator_text(o));
+  if (json["comment"] != "") row("comment", json["comment"]);
+  row("memory", size_of_file(json["bytes"]));
+}
+
 void print(const Json& json) {
   fmt::print("{}: {} {}, {}\n", json["file"].get<std::string>(), json["format"].get<std::string>(),
              json["kind"].get<std::string>(), size_of_file(json["file_bytes"]));
   if (json["kind"] == "groom") print_groom(json);
+  if (json["kind"] == "hair mesh") print_hair_mesh(json);
   if (json["kind"] == "mesh") print_mesh(json);
   if (json["kind"] == "image") print_image(json);
 }
@@ -263,9 +323,9 @@ void run(const Options& options) {
 
 void add_info(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("info", "Says what a groom, a mesh or an image holds");
+  CLI::App* verb = app.add_subcommand("info", "Says what a groom, a hair mesh, a mesh or an image holds");
   verb->footer("Example:\n  pelage info hair.tfx --scale 0.01");
-  verb->add_option("file", options->files, "Grooms, meshes or images")->required()->type_name("FILE");
+  verb->add_option("file", options->files, "Grooms, hair meshes, meshes or images")->required()->type_name("FILE");
   verb->add_flag("--json", options->json, "One JSON object a line, for machines");
   add_import_options(*verb, options->import);
   add_machine_options(*verb);

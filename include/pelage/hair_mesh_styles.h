@@ -15,15 +15,16 @@ enum class HairMeshStyle { kBob, kWavy, kCurls, kAfro, kPonytail, kBraid };
 /// What to make. make_hair_mesh() throws an Error that names the setting and its range when one is outside it.
 struct HairMeshSettings {
   HairMeshStyle style = HairMeshStyle::kBob;
-  std::uint32_t seed = 1;           ///< any; another seed is another head of hair in the same cut
-  std::uint32_t strands = 127000;   ///< of all bundles, 1000…1,000,000; shared out by the area that they stand on
-  float width = 8e-5f;              ///< diameter at the root, metres, 0…0.1
-  float length = 1;                 ///< of the hair, as a share of the style's own, 0.5…1.5
-  float parting = 0.018f;           ///< metres left of the head's middle, −0.05…0.05; of styles that are parted
-  bool occlusion = true;            ///< bake_occlusion() at the end
+  std::uint32_t seed = 1;          ///< any; another seed is another head of hair in the same cut
+  std::uint32_t strands = 127000;  ///< of all bundles, 1000…1,000,000; shared out by the area that they stand on
+  float width = 8e-5f;             ///< diameter at the root, metres, 0…0.1
+  float length = 1;                ///< of the hair, as a share of the style's own, 0.5…1.5
+  float parting = 0.018f;          ///< metres left of the head's middle, −0.05…0.05; of styles that are parted
+  bool occlusion = true;           ///< bake_occlusion() at the end
 };
 
 /// Names used on the command line: "bob", "long-wavy", "curls", "afro", "ponytail", "braid".
+/// None in a build without hair meshes.
 const std::vector<std::string>& hair_mesh_style_names();
 HairMeshStyle hair_mesh_style_from_name(const std::string& name);  ///< throws Error naming the nearest style
 

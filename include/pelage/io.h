@@ -31,7 +31,7 @@ struct ImportReport {
   std::vector<std::string> notes;  ///< one sentence each, for people
 };
 
-/// Reads any registered groom format. Throws Error naming byte, line or strand. The result satisfies validate().
+/// Reads any registered groom format, and hair meshes as the strands of expand(). Throws Error naming byte, line or strand. The result satisfies validate().
 StrandSet read_strands(const std::string& path, const ImportOptions& options = {}, ImportReport* report = nullptr,
                        const Progress& progress = {});
 

@@ -74,8 +74,8 @@ bool is_mannequin(const TriangleMesh& mesh) {
 TriangleMesh mannequin_head() { return groom::mannequin().mesh; }
 
 bool grown_on_mannequin(const StrandSet& strands) {
-  constexpr std::size_t kLooks = 512;            // roots looked at, all over the groom
-  constexpr float kSkin = 2e-3f, kEdge = 4e-3f;  // metres: chords of the mesh, and its triangles across the hairline
+  constexpr std::size_t kLooks = 512;             // roots looked at, all over the groom
+  constexpr float kSkin = 8e-3f, kEdge = 12e-3f;  // metres: chords of hair meshes, and their quads across the hairline
   const std::size_t count = strands.strand_count(), stride = count / kLooks + 1;
   for (std::size_t i = 0; i < count; i += stride) {
     const Vec3 root = strands.points[strands.offsets[i]];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/hair_mesh_formats.h"
 #include "io/mesh_formats.h"
 #include "io/strand_registry.h"
 
@@ -32,6 +33,8 @@ std::string image_format(const ByteSource& source) {
 
 FileKind file_kind(const ByteSource& source) {
   if (const std::string image = image_format(source); !image.empty()) return {FileContent::kImage, image};
+  if (const HairMeshFile file = hair_mesh_file(source); file != HairMeshFile::kNone)
+    return {FileContent::kHairMesh, file == HairMeshFile::kBinary ? "binary" : "text"};
   for (const StrandFormat* format : strand_registry())
     if (format->mismatch(source).empty()) return {};
   const std::string mesh = detect_mesh_format(source);

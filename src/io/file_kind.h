@@ -1,4 +1,4 @@
-// Groom, mesh or image, told by content.
+// Groom, hair mesh, mesh or image, told by content.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace pelage::io {
 
-enum class FileContent { kGroom, kMesh, kImage };
+enum class FileContent { kGroom, kHairMesh, kMesh, kImage };
 
 struct FileKind {
   FileContent content = FileContent::kGroom;
-  std::string format;  ///< "exr", "ply", …; empty for grooms, whose reader says it best
+  std::string format;  ///< "exr", "ply", "binary", …; empty for grooms, whose reader says it best
 };
 
 /// "exr", "png", "hdr" or "jpeg" by the first bytes; "" for anything else.

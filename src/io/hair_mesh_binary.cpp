@@ -19,7 +19,14 @@ namespace {
 constexpr std::array<char, 8> kMagic = {'\x89', 'H', 'M', 'E', 'S', 'H', '\r', '\n'};
 constexpr std::uint16_t kMajor = 1, kMinor = 0;
 
-enum Flag : std::uint32_t { kFloatPlaces = 1, kTangents = 2, kWideUvw = 4, kOcclusion = 8, kWideOcclusion = 16, kKnownFlags = 31 };
+enum Flag : std::uint32_t {
+  kFloatPlaces = 1,
+  kTangents = 2,
+  kWideUvw = 4,
+  kOcclusion = 8,
+  kWideOcclusion = 16,
+  kKnownFlags = 31
+};
 
 struct Header {
   std::array<char, 8> magic;
@@ -116,7 +123,8 @@ class Writer {
     put(largest);
     for (const Vec3 t : mesh_.tangents)
       for (const float x : {t.x, t.y, t.z})
-        put(static_cast<std::int16_t>(largest > 0 ? std::lround(static_cast<double>(x) / static_cast<double>(largest) * kTangentSteps) : 0));
+        put(static_cast<std::int16_t>(
+            largest > 0 ? std::lround(static_cast<double>(x) / static_cast<double>(largest) * kTangentSteps) : 0));
   }
   void put_floats(const std::vector<Vec3>& vectors) {
     bytes_.append(reinterpret_cast<const char*>(vectors.data()), vectors.size() * sizeof(Vec3));
@@ -216,7 +224,8 @@ class Reader {
 
   void read_layers(HairMesh& mesh) {
     mesh.column_offsets.resize(header_.columns + std::size_t{1});
-    for (std::size_t c = 0; c < header_.columns; ++c) mesh.column_offsets[c + 1] = mesh.column_offsets[c] + take<std::uint8_t>();
+    for (std::size_t c = 0; c < header_.columns; ++c)
+      mesh.column_offsets[c + 1] = mesh.column_offsets[c] + take<std::uint8_t>();
     if (mesh.column_offsets.back() != header_.vertices)
       bad("columns", fmt::format("they have {} vertices, the header says {}", mesh.column_offsets.back(), header_.vertices));
   }

@@ -19,6 +19,9 @@ namespace pelage::io {
 enum class HairMeshFile { kNone, kBinary, kText };
 HairMeshFile hair_mesh_file(const ByteSource& source);
 
+/// What read_strands() expands of a hair mesh: a few kilobytes can ask for more strands than any memory holds.
+inline constexpr std::uint64_t kMostStrandsOfHairMesh = 4000000;
+
 /// Sizes are checked against the source before anything is allocated; throws Error naming the byte, line or key. What is
 /// returned satisfies validate().
 HairMesh read_hair_mesh(const ByteSource& source);

@@ -22,9 +22,7 @@ using kit::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 
-HairMesh read_bytes(const std::string& bytes) {
-  return read_hair_mesh(ByteSource("mesh", std::as_bytes(std::span(bytes))));
-}
+HairMesh read_bytes(const std::string& bytes) { return read_hair_mesh(ByteSource("mesh", std::as_bytes(std::span(bytes)))); }
 
 std::string error_of(const std::string& bytes) {
   try {
@@ -59,8 +57,8 @@ void expect_same_but_vectors(const HairMesh& a, const HairMesh& b) {
     for (std::size_t i = 0; i < a.styles[s].size(); ++i) {
       const StyleOperator &x = a.styles[s][i], &y = b.styles[s][i];
       EXPECT_EQ(x.kind, y.kind);
-      EXPECT_EQ(x.amount, y.amount), EXPECT_EQ(x.frequency, y.frequency);
-      EXPECT_EQ(x.start, y.start), EXPECT_EQ(x.variation, y.variation);
+      EXPECT_EQ((std::array{x.amount, x.frequency, x.start, x.variation}),
+                (std::array{y.amount, y.frequency, y.start, y.variation}));
     }
   }
 }
@@ -194,10 +192,12 @@ TEST(HairMeshFile, TextErrorsNameLineAndKey) {
   EXPECT_THAT(error_of(text_with("\"frequency\"", "\"frequenzy\"")),
               AllOf(HasSubstr("line 3: /styles/0/0/frequenzy"), HasSubstr("did you mean `frequency`")));
   EXPECT_THAT(error_of(text_with("\"wave\"", "\"waves\"")), AllOf(HasSubstr("line 3"), HasSubstr("did you mean `wave`")));
-  EXPECT_THAT(error_of(text_with("[1, 0, 1]", "[1, 0]")), AllOf(HasSubstr("line 7"), HasSubstr("3 numbers")));
-  EXPECT_THAT(error_of(text_with("[1, 0, 1]", "[1, 0, 1e30]")), AllOf(HasSubstr("line 7: /columns/2/positions/0/2"), HasSubstr("out of range")));
-  EXPECT_THAT(error_of(text_with("[1, 0, 1]", "[1, 0, \"x\"]")), AllOf(HasSubstr("line 7"), HasSubstr("a number")));
-  EXPECT_THAT(error_of(text_with("[1, 1, 1]", "[1, 1, 1.5]")), AllOf(HasSubstr("line 7: /columns/2/uvw/1"), HasSubstr("out of range")));
+  EXPECT_THAT(error_of(text_with("[[1, 0, 1]", "[[1, 0]")), AllOf(HasSubstr("line 7"), HasSubstr("3 numbers")));
+  EXPECT_THAT(error_of(text_with("[[1, 0, 1]", "[[1, 0, 1e30]")),
+              AllOf(HasSubstr("line 7: /columns/2/positions/0/2"), HasSubstr("out of range")));
+  EXPECT_THAT(error_of(text_with("[[1, 0, 1]", "[[1, 0, \"x\"]")), AllOf(HasSubstr("line 7"), HasSubstr("a number")));
+  EXPECT_THAT(error_of(text_with("[1, 1, 1]", "[1, 1, 1.5]")),
+              AllOf(HasSubstr("line 7: /columns/2/uvw/1"), HasSubstr("out of range")));
   EXPECT_THAT(error_of(text_with("[0, 1, 2, 3]", "[0, 1, 2]")), HasSubstr("line 9: /bundles/0/columns: 3 columns"));
   EXPECT_THAT(error_of(text_with("\"strands\": 12", "\"strands\": 0")), HasSubstr("line 9: /bundles/0/strands"));
   EXPECT_THAT(error_of(text_with(", \"strands\": 12", "")), HasSubstr("`strands` is missing"));
@@ -281,7 +281,7 @@ TEST(HairMeshFile, UnknownExtensionsAndPlaces) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_hair_mesh(folder / "a.pelage", kit::two_bundles()), Error);
   EXPECT_THROW(write_hair_mesh(folder / "none/a.hairmesh", kit::two_bundles()), Error);
-  EXPECT_THROW(read_hair_mesh(folder / "absent"), Error);
+  EXPECT_THROW(pelage::read_hair_mesh(folder / "absent"), Error);
   EXPECT_EQ(folder.entries(), 0u);
 }
 

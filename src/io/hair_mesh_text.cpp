@@ -118,14 +118,14 @@ const Fields<MeshText>& mesh_fields() {
                         }
                       }}
           .required(),
-      list_field("columns", "Stacks of vertices, which neighboring bundles share", &MeshText::columns, column_fields()).required(),
-      Field<MeshText>{"bundles",
-                      {{"description", "The hair between four columns"},
-                       {"type", "array"},
-                       {"items", object_schema(bundle_fields())}},
-                      [](const JsonValue& v, MeshText& out) {
-                        for (const JsonValue& b : v.elements()) read_object(b, bundle_fields(), out.mesh.bundles.emplace_back());
-                      }}
+      list_field("columns", "Stacks of vertices, which neighboring bundles share", &MeshText::columns, column_fields())
+          .required(),
+      Field<MeshText>{
+          "bundles",
+          {{"description", "The hair between four columns"}, {"type", "array"}, {"items", object_schema(bundle_fields())}},
+          [](const JsonValue& v, MeshText& out) {
+            for (const JsonValue& b : v.elements()) read_object(b, bundle_fields(), out.mesh.bundles.emplace_back());
+          }}
           .required(),
   };
   return table;
@@ -216,8 +216,7 @@ class TextWriter {
     put_vectors("uvw", mesh_.uvw, c);
     if (!mesh_.occlusion.empty()) {
       const auto begin = mesh_.occlusion.begin();
-      put(",\n     \"occlusion\": [{}]",
-          fmt::join(begin + mesh_.column_offsets[c], begin + mesh_.column_offsets[c + 1], ", "));
+      put(",\n     \"occlusion\": [{}]", fmt::join(begin + mesh_.column_offsets[c], begin + mesh_.column_offsets[c + 1], ", "));
     }
     put("}}");
   }

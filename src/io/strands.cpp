@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "io/hair_mesh_formats.h"
 #include "io/place_strands.h"
 #include "io/strand_registry.h"
 #include "io/told.h"
@@ -32,10 +33,25 @@ StrandSet read_strands(const ByteSource& source, const ImportOptions& options, I
   return std::move(file.strands);
 }
 
+/// Hair meshes say their unit and axes, and their strands need no repair.
+static StrandSet strands_of_hair_mesh(const std::string& path, ImportReport* report, const Progress& progress) {
+  const HairMesh mesh = pelage::read_hair_mesh(path);
+  if (strand_count(mesh) > kMostStrandsOfHairMesh)
+    throw Error(path, "", std::to_string(strand_count(mesh)) + " strands at full detail",
+                "expand() takes a share of them; render --method swr makes them on the fly");
+  if (report) {
+    *report = {};
+    report->format = "hairmesh";
+  }
+  return expand(mesh, {}, progress);
+}
+
 }  // namespace io
 
 StrandSet read_strands(const std::string& path, const ImportOptions& options, ImportReport* report, const Progress& progress) {
-  return io::read_strands(io::ByteSource::open(path), options, report, progress);
+  const io::ByteSource source = io::ByteSource::open(path);
+  if (io::hair_mesh_file(source) != io::HairMeshFile::kNone) return io::strands_of_hair_mesh(path, report, progress);
+  return io::read_strands(source, options, report, progress);
 }
 
 namespace {

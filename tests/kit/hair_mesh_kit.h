@@ -25,12 +25,13 @@ inline HairMesh two_bundles(std::uint32_t layers = 4) {
   }
   mesh.bundles = {{{0, 1, 4, 3}, 40, 0, 7}, {{1, 2, 5, 4}, 60, 1, 4294967295u}};
   using Kind = StyleOperator::Kind;
-  mesh.styles = {{{Kind::kLength, 1.1f, 0, 0, 0.2f},
-                  {Kind::kClump, 0.6f, 3, 0.25f, 0.5f},
-                  {Kind::kWave, 0.004f, 3.5f, 0.1f, 0.3f},
-                  {Kind::kNoise, 0.002f, 9, 0, 0.1f},
-                  {Kind::kTaper, 0.3f, 0, 0.5f, 0.4f}},
-                 {{Kind::kBraid, 0.5f, 4, 0.3f, 0.1f}, {Kind::kCurl, 0.005f, 6, 0.2f, 0.7f}, {Kind::kFrizz, 0.001f, 20, 0, 0.9f}}};
+  mesh.styles = {
+      {{Kind::kLength, 1.1f, 0, 0, 0.2f},
+       {Kind::kClump, 0.6f, 3, 0.25f, 0.5f},
+       {Kind::kWave, 0.004f, 3.5f, 0.1f, 0.3f},
+       {Kind::kNoise, 0.002f, 9, 0, 0.1f},
+       {Kind::kTaper, 0.3f, 0, 0.5f, 0.4f}},
+      {{Kind::kBraid, 0.5f, 4, 0.3f, 0.1f}, {Kind::kCurl, 0.005f, 6, 0.2f, 0.7f}, {Kind::kFrizz, 0.001f, 20, 0, 0.9f}}};
   mesh.width = 7e-5f;
   mesh.comment = "two bundles, \"quoted\" – é";
   return mesh;

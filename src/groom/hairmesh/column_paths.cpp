@@ -6,6 +6,7 @@
 #include "groom/collide.h"
 #include "groom/head_shape.h"
 #include "groom/mannequin.h"
+#include "groom/noise.h"
 #include "groom/scalp.h"
 #include "groom/sdf.h"
 
@@ -48,7 +49,8 @@ class Faller {
   std::vector<Vec3> path() const {
     std::vector<Vec3> points{c_.root};
     Vec3 p = c_.root, direction = first_direction();
-    const float cut = mix(f_.cut_front, f_.cut_back, smoothstep(0.15f, 0.85f, c_.along));
+    const float cut =
+        mix(f_.cut_front, f_.cut_back, smoothstep(0.15f, 0.85f, c_.along)) + f_.ragged * noise3(c_.root * 60.f, 51u);
     for (float s = kStep; s < f_.length && p.y > cut; s += kStep) {
       direction = normalize(direction + pull(p, s) * (kStep / f_.bend_length));
       Vec3 next = clear_of_head(p + direction * kStep, clearance(s));
@@ -68,7 +70,8 @@ class Faller {
   Vec3 first_direction() const {
     const Vec3 beside = c_.root + Vec3(0.004f * static_cast<float>(c_.side), 0, 0);
     const Vec3 flow = normalize(parting_flow(beside, c_.normal, f_.parting_x));
-    return normalize(c_.normal * f_.lift + flow * (1 - f_.lift));
+    const float lift = c_.side != 0 ? 0.5f * f_.lift : f_.lift;
+    return normalize(c_.normal * lift + flow * (1 - lift));
   }
   Vec3 pull(Vec3 p, float s) const {
     Vec3 sum(0, -smoothstep(0.f, f_.bend_length, s), 0);
@@ -79,7 +82,7 @@ class Faller {
   }
   /// What grows higher lies further out.
   float clearance(float s) const {
-    const float layer = f_.volume * (1 - c_.down) * smoothstep(0.f, 0.08f, s);
+    const float layer = f_.volume * (1 - c_.down) * smoothstep(0.01f, 0.13f, s);
     return std::min(0.5f * s, kUnderHair + layer);
   }
 

@@ -17,6 +17,7 @@ struct Fall {
   float length = 0.3f;        ///< metres, longest
   float cut_front = -1;       ///< metres, y below which hair of the forehead is cut …
   float cut_back = -1;        ///< … and that of the nape
+  float ragged = 0;           ///< metres by which the cut goes up and down
   float tuck = 0;             ///< 0…1: how far tips turn in below the chin
   float spread = 0;           ///< 0…1: how far hair stands away from the head as it falls
   float parting_x = 0;
@@ -29,11 +30,11 @@ std::vector<Vec3> ball_path(const ScalpColumn& column, float radius);
 
 /// Hair that is combed close over the head to a tie at the back, and hangs from it as a tail.
 struct Tie {
-  float lift = 0.004f;           ///< metres above the skin at most
-  float length = 0.3f;           ///< metres of the tail
-  float radius = 0.024f;         ///< metres, of the tail at its widest
-  float waist = 0.009f;          ///< metres, at the tie
-  float tip = 0.25f;             ///< the end's width as a share of the widest
+  float lift = 0.004f;    ///< metres above the skin at most
+  float length = 0.3f;    ///< metres of the tail
+  float radius = 0.024f;  ///< metres, of the tail at its widest
+  float waist = 0.009f;   ///< metres, at the tie
+  float tip = 0.25f;      ///< the end's width as a share of the widest
 };
 struct TiedPath {
   std::vector<Vec3> to_tie, tail;  ///< the tail begins where the other ends

@@ -1,6 +1,6 @@
 // In place of the whole sub-module where a build leaves it out: every entry point says how to have it.
 #include <pelage/error.h>
-#include <pelage/hair_mesh.h>
+#include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
 
 namespace pelage {
@@ -20,6 +20,14 @@ Bounds bounds(const HairMesh&, const HairMesh::Bundle&) { left_out("hair mesh");
 StrandSet expand(const HairMesh&, const ExpandSettings&, const Progress&) { left_out("hair mesh"); }
 HairMesh read_hair_mesh(const std::string& path) { left_out(path); }
 void write_hair_mesh(const std::string& path, const HairMesh&, const HairMeshPrecision&) { left_out(path); }
+// None: the words of a build without hair meshes do not name them.
+const std::vector<std::string>& hair_mesh_style_names() {
+  static const std::vector<std::string> names;
+  return names;
+}
+HairMeshStyle hair_mesh_style_from_name(const std::string&) { left_out("hair mesh"); }
+HairMesh make_hair_mesh(const HairMeshSettings&, const Progress&) { left_out("hair mesh"); }
+void bake_occlusion(HairMesh&, const Progress&) { left_out("hair mesh"); }
 std::size_t resident_bytes(const HairMesh&) { left_out("hair mesh"); }
 
 }  // namespace pelage

@@ -29,11 +29,11 @@ struct Recipe {
   int layers = 10;
   float denser_at_root = 0.35f;
   Fall fall;
-  float ball_radius = 0;        ///< metres; 0: no ball
+  float ball_radius = 0;  ///< metres; 0: no ball
   Tie tie;
-  int layers_to_tie = 0;        ///< 0: not tied
-  bool whole_tail = false;      ///< every bundle fills the tail, as a braid wants it
-  float strays = 0.012f;        ///< share of strands that keep to no lock: bundles of their own, in the second style
+  int layers_to_tie = 0;    ///< 0: not tied
+  bool whole_tail = false;  ///< every bundle fills the tail, as a braid wants it
+  float strays = 0.012f;    ///< share of strands that keep to no lock: bundles of their own, in the second style
   Operators hair, stray;
 };
 
@@ -41,14 +41,21 @@ Recipe bob() {
   Recipe r;
   r.grid = {.rows = 10, .across = 5, .parted = true};
   r.layers = 11;
-  r.fall = {.lift = 0.30f, .bend_length = 0.045f, .volume = 0.020f, .length = 0.36f, .cut_front = -0.112f, .cut_back = -0.095f,
-            .tuck = 0.5f};
-  r.hair = {{Kind::kLength, 1.01f, 0, 0, 0.06f},
-            {Kind::kClump, 0.32f, 3, 0.15f, 0.9f},
-            {Kind::kNoise, 0.0022f, 14, 0.05f, 0.05f},
-            {Kind::kFrizz, 0.0016f, 3, 0.1f, 1},
+  r.fall = {.lift = 0.26f,
+            .bend_length = 0.040f,
+            .volume = 0.013f,
+            .length = 0.36f,
+            .cut_front = -0.115f,
+            .cut_back = -0.092f,
+            .tuck = 0.7f};
+  r.hair = {{Kind::kLength, 1.01f, 0, 0, 0.05f},
+            {Kind::kClump, 0.30f, 4, 0.15f, 0.9f},
+            {Kind::kNoise, 0.003f, 2.5f, 0.05f, 0.04f},
+            {Kind::kFrizz, 0.0012f, 2.5f, 0.1f, 1},
             {Kind::kTaper, 0.55f, 0, 0.5f, 0.4f}};
-  r.stray = {{Kind::kLength, 1.0f, 0, 0, 0.5f}, {Kind::kNoise, 0.005f, 20, 0.05f, 0.5f}, {Kind::kFrizz, 0.007f, 3, 0.05f, 0.8f},
+  r.stray = {{Kind::kLength, 1.0f, 0, 0, 0.5f},
+             {Kind::kNoise, 0.004f, 5, 0.05f, 0.5f},
+             {Kind::kFrizz, 0.006f, 2, 0.05f, 0.8f},
              {Kind::kTaper, 0.3f, 0, 0.3f, 0.4f}};
   return r;
 }
@@ -58,16 +65,22 @@ Recipe long_wavy() {
   r.grid = {.rows = 10, .across = 4, .parted = true, .divided = true};
   r.layers = 14;
   r.denser_at_root = 0.25f;
-  r.fall = {.lift = 0.34f, .bend_length = 0.05f, .volume = 0.024f, .length = 0.47f, .cut_front = -0.235f, .cut_back = -0.265f,
-            .spread = 0.15f};
-  r.hair = {{Kind::kLength, 1.02f, 0, 0, 0.14f},
-            {Kind::kClump, 0.62f, 3, 0.1f, 0.7f},
-            {Kind::kWave, 0.0085f, 4.5f, 0.18f, 0.12f},
-            {Kind::kNoise, 0.005f, 11, 0.05f, 0.04f},
-            {Kind::kFrizz, 0.002f, 5, 0.1f, 1},
-            {Kind::kTaper, 0.45f, 0, 0.5f, 0.4f}};
-  r.stray = {{Kind::kLength, 1.0f, 0, 0, 0.6f}, {Kind::kWave, 0.007f, 4, 0.1f, 1}, {Kind::kNoise, 0.007f, 16, 0.05f, 0.5f},
-             {Kind::kFrizz, 0.008f, 4, 0.05f, 0.8f}, {Kind::kTaper, 0.3f, 0, 0.3f, 0.4f}};
+  r.fall = {.lift = 0.28f,
+            .bend_length = 0.045f,
+            .volume = 0.017f,
+            .length = 0.47f,
+            .cut_front = -0.235f,
+            .cut_back = -0.265f,
+            .ragged = 0.02f,
+            .spread = 0.1f};
+  r.hair = {{Kind::kLength, 1.02f, 0, 0, 0.14f},     {Kind::kClump, 0.66f, 3, 0.08f, 0.6f},
+            {Kind::kWave, 0.0095f, 4, 0.16f, 0.10f}, {Kind::kNoise, 0.006f, 3, 0.05f, 0.04f},
+            {Kind::kFrizz, 0.0016f, 4, 0.1f, 1},     {Kind::kTaper, 0.45f, 0, 0.5f, 0.4f}};
+  r.stray = {{Kind::kLength, 1.0f, 0, 0, 0.6f},
+             {Kind::kWave, 0.007f, 4, 0.1f, 1},
+             {Kind::kNoise, 0.007f, 6, 0.05f, 0.5f},
+             {Kind::kFrizz, 0.007f, 3, 0.05f, 0.8f},
+             {Kind::kTaper, 0.3f, 0, 0.3f, 0.4f}};
   return r;
 }
 
@@ -75,17 +88,24 @@ Recipe curls() {
   Recipe r;
   r.grid = {.rows = 10, .across = 5, .parted = true};
   r.layers = 10;
-  r.fall = {.lift = 0.5f, .bend_length = 0.075f, .volume = 0.034f, .length = 0.34f, .cut_front = -0.125f, .cut_back = -0.145f,
-            .spread = 0.5f};
-  r.hair = {{Kind::kLength, 1.05f, 0, 0, 0.22f},
-            {Kind::kClump, 0.86f, 4, 0.02f, 0.35f},
-            {Kind::kCurl, 0.0075f, 8, 0.06f, 0.06f},
-            {Kind::kNoise, 0.008f, 13, 0.05f, 0.04f},
-            {Kind::kFrizz, 0.0022f, 9, 0.08f, 1},
-            {Kind::kTaper, 0.5f, 0, 0.5f, 0.4f}};
+  r.fall = {.lift = 0.38f,
+            .bend_length = 0.06f,
+            .volume = 0.030f,
+            .length = 0.34f,
+            .cut_front = -0.120f,
+            .cut_back = -0.150f,
+            .ragged = 0.035f,
+            .tuck = 0.35f,
+            .spread = 0.28f};
+  r.hair = {{Kind::kLength, 1.06f, 0, 0, 0.16f},        {Kind::kClump, 0.90f, 2, 0, 0.2f},
+            {Kind::kCurl, 0.0085f, 6.5f, 0.05f, 0.05f}, {Kind::kNoise, 0.010f, 4, 0.05f, 0.03f},
+            {Kind::kFrizz, 0.0016f, 6, 0.08f, 1},       {Kind::kTaper, 0.5f, 0, 0.5f, 0.4f}};
   r.strays = 0.03f;
-  r.stray = {{Kind::kLength, 1.05f, 0, 0, 0.5f}, {Kind::kCurl, 0.008f, 7, 0.05f, 1}, {Kind::kNoise, 0.01f, 18, 0.05f, 0.5f},
-             {Kind::kFrizz, 0.008f, 6, 0.05f, 0.8f}, {Kind::kTaper, 0.3f, 0, 0.3f, 0.4f}};
+  r.stray = {{Kind::kLength, 1.05f, 0, 0, 0.5f},
+             {Kind::kCurl, 0.008f, 6, 0.05f, 1},
+             {Kind::kNoise, 0.01f, 6, 0.05f, 0.5f},
+             {Kind::kFrizz, 0.006f, 5, 0.05f, 0.8f},
+             {Kind::kTaper, 0.3f, 0, 0.3f, 0.4f}};
   return r;
 }
 
@@ -94,15 +114,14 @@ Recipe afro() {
   r.grid = {.rows = 12, .across = 6};
   r.layers = 5;
   r.denser_at_root = 0;
-  r.ball_radius = 0.172f;
-  r.hair = {{Kind::kLength, 1.04f, 0, 0, 0.3f},
-            {Kind::kClump, 0.42f, 5, 0.1f, 0.8f},
-            {Kind::kCurl, 0.0042f, 9, 0.03f, 0.8f},
-            {Kind::kNoise, 0.006f, 22, 0.1f, 0.15f},
-            {Kind::kFrizz, 0.004f, 8, 0.05f, 0.7f},
-            {Kind::kTaper, 0.7f, 0, 0.5f, 0.3f}};
+  r.ball_radius = 0.168f;
+  r.hair = {{Kind::kLength, 1.04f, 0, 0, 0.3f},      {Kind::kClump, 0.55f, 5, 0.1f, 0.7f},
+            {Kind::kCurl, 0.0045f, 8, 0.03f, 0.6f},  {Kind::kNoise, 0.009f, 16, 0.15f, 0.1f},
+            {Kind::kFrizz, 0.0035f, 7, 0.05f, 0.7f}, {Kind::kTaper, 0.7f, 0, 0.5f, 0.3f}};
   r.strays = 0.02f;
-  r.stray = {{Kind::kLength, 1.14f, 0, 0, 0.3f}, {Kind::kCurl, 0.005f, 7, 0.03f, 1}, {Kind::kFrizz, 0.008f, 6, 0.05f, 0.7f},
+  r.stray = {{Kind::kLength, 1.14f, 0, 0, 0.3f},
+             {Kind::kCurl, 0.005f, 7, 0.03f, 1},
+             {Kind::kFrizz, 0.007f, 6, 0.05f, 0.7f},
              {Kind::kTaper, 0.5f, 0, 0.3f, 0.4f}};
   return r;
 }
@@ -112,29 +131,28 @@ Recipe ponytail() {
   r.grid = {.rows = 9, .across = 5};
   r.layers = 13;
   r.layers_to_tie = 6;
-  r.tie = {.lift = 0.005f, .length = 0.30f, .radius = 0.027f};
-  r.hair = {{Kind::kLength, 1.0f, 0, 0, 0.16f},
-            {Kind::kClump, 0.35f, 2, 0.45f, 0.9f},
-            {Kind::kWave, 0.005f, 3, 0.5f, 0.25f},
-            {Kind::kNoise, 0.0025f, 12, 0.45f, 0.1f},
-            {Kind::kFrizz, 0.0018f, 5, 0.3f, 1},
-            {Kind::kTaper, 0.5f, 0, 0.6f, 0.4f}};
+  r.tie = {.lift = 0.006f, .length = 0.30f, .radius = 0.030f, .tip = 0.4f};
+  r.hair = {{Kind::kLength, 1.0f, 0, 0, 0.2f},       {Kind::kClump, 0.30f, 2, 0.45f, 0.9f},
+            {Kind::kWave, 0.008f, 2.5f, 0.5f, 0.3f}, {Kind::kNoise, 0.003f, 4, 0.45f, 0.1f},
+            {Kind::kFrizz, 0.0016f, 4, 0.3f, 1},     {Kind::kTaper, 0.5f, 0, 0.6f, 0.4f}};
   r.strays = 0.008f;
-  r.stray = {{Kind::kLength, 0.9f, 0, 0, 0.9f}, {Kind::kNoise, 0.003f, 20, 0.05f, 0.5f}, {Kind::kFrizz, 0.006f, 5, 0.02f, 0.8f},
+  r.stray = {{Kind::kLength, 0.9f, 0, 0, 0.9f},
+             {Kind::kNoise, 0.003f, 6, 0.05f, 0.5f},
+             {Kind::kFrizz, 0.006f, 3, 0.02f, 0.8f},
              {Kind::kTaper, 0.3f, 0, 0.3f, 0.4f}};
   return r;
 }
 
 Recipe braid() {
   Recipe r = ponytail();
-  r.grid = {.rows = 5, .across = 3, .separate = true};
-  r.layers = 13;
-  r.tie = {.lift = 0.005f, .length = 0.30f, .radius = 0.030f, .waist = 0.010f, .tip = 0.35f};
+  r.grid = {.rows = 6, .across = 3, .separate = true};
+  r.layers = 12;
+  r.tie = {.lift = 0.006f, .length = 0.30f, .radius = 0.030f, .waist = 0.010f, .tip = 0.45f};
   r.whole_tail = true;
   r.hair = {{Kind::kLength, 1.0f, 0, 0, 0.06f},
-            {Kind::kBraid, 0.55f, 9, 0.4f, 0.12f},
-            {Kind::kNoise, 0.001f, 12, 0.1f, 0.2f},
-            {Kind::kFrizz, 0.0014f, 7, 0.1f, 1},
+            {Kind::kBraid, 0.55f, 8, 0.4f, 0.12f},
+            {Kind::kNoise, 0.001f, 5, 0.1f, 0.2f},
+            {Kind::kFrizz, 0.0012f, 6, 0.1f, 1},
             {Kind::kTaper, 0.5f, 0, 0.6f, 0.4f}};
   return r;
 }
@@ -217,9 +235,10 @@ class Maker {
   void add_bundles() {
     std::vector<double> area;
     for (const auto& quad : grid_.quads) area.push_back(quad_area(quad));
-    const auto strays = static_cast<std::uint32_t>(std::lround(static_cast<double>(r_.strays) * s_.strands));
+    const auto due = static_cast<std::uint32_t>(std::lround(static_cast<double>(r_.strays) * s_.strands));
+    const std::uint32_t strays = std::max(due, static_cast<std::uint32_t>(grid_.quads.size()));
     add_bundles(area, s_.strands - strays, 0);
-    if (strays > 0) add_bundles(area, strays, 1);
+    add_bundles(area, strays, 1);
   }
 
   double quad_area(const std::array<std::uint32_t, 4>& q) const {

@@ -29,9 +29,11 @@ class Cloud {
   explicit Cloud(const HairMesh& mesh) {
     ExpandSettings settings;
     settings.points = kPoints;
-    settings.share = static_cast<float>(std::min(1., static_cast<double>(kMostStrands) / static_cast<double>(strand_count(mesh))));
+    settings.share =
+        static_cast<float>(std::min(1., static_cast<double>(kMostStrands) / static_cast<double>(strand_count(mesh))));
     const StrandSet strands = expand(mesh, settings);
-    const Bounds box = bounds(strands);
+    Bounds box = bounds(strands);
+    for (const Vec3 p : mesh.positions) box.extend(p);
     lower_ = box.lower;
     const Vec3 extent = box.extent();
     size_ = std::max({extent.x, extent.y, extent.z, 1e-6f}) / static_cast<float>(kCells);
@@ -39,8 +41,10 @@ class Cloud {
       const float side = axis == 0 ? extent.x : axis == 1 ? extent.y : extent.z;
       count_[static_cast<std::size_t>(axis)] = static_cast<int>(side / size_) + 1;
     }
-    cells_.resize(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) * static_cast<std::size_t>(count_[2]));
-    const float scale = static_cast<float>(static_cast<double>(strand_count(mesh)) / static_cast<double>(strands.strand_count()));
+    cells_.resize(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
+                  static_cast<std::size_t>(count_[2]));
+    const float scale =
+        static_cast<float>(static_cast<double>(strand_count(mesh)) / static_cast<double>(strands.strand_count()));
     for (std::size_t s = 0; s < strands.strand_count(); ++s) add_strand(strands, s, scale / (size_ * size_ * size_));
   }
 
@@ -57,7 +61,7 @@ class Cloud {
   }
 
  private:
-  /// Null outside, from where no ray comes back: bounds() of the strands is convex.
+  /// Null outside, from where no ray comes back: the box holds vertices and strands.
   const Cell* at(Vec3 p) const {
     const Vec3 local = (p - lower_) / size_;
     const int x = static_cast<int>(std::floor(local.x)), y = static_cast<int>(std::floor(local.y)),
@@ -72,8 +76,8 @@ class Cloud {
   }
   static float turned_to(const Cell& c, Vec3 w) {
     const std::array<float, 6>& m = c.moments;
-    const float along = m[0] * w.x * w.x + m[1] * w.y * w.y + m[2] * w.z * w.z +
-                        2 * (m[3] * w.x * w.y + m[4] * w.x * w.z + m[5] * w.y * w.z);
+    const float along =
+        m[0] * w.x * w.x + m[1] * w.y * w.y + m[2] * w.z * w.z + 2 * (m[3] * w.x * w.y + m[4] * w.x * w.z + m[5] * w.y * w.z);
     return std::sqrt(std::max(c.area * (c.area - along), 0.f));
   }
 

@@ -42,8 +42,8 @@ class GridMaker {
     const float first = elevation(front), last = elevation(back) + (elevation(back) < 0 ? 2 * kPi : 0);
     const float angle = mix(first, last, along);
     const float crown_x = kWhorlX * (s_.parted ? 1.f : 0.f) + 0.5f * s_.parting_x;
-    const float x = along < kCrown ? mix(front.x, crown_x, smoothstep(0, kCrown, along))
-                                   : mix(crown_x, 0, smoothstep(kCrown, 1, along));
+    const float x =
+        along < kCrown ? mix(front.x, crown_x, smoothstep(0, kCrown, along)) : mix(crown_x, 0, smoothstep(kCrown, 1, along));
     return skin_along({x, kSkullCenter.y, kSkullCenter.z}, {0, std::sin(angle), std::cos(angle)});
   }
 
