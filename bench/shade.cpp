@@ -72,7 +72,10 @@ constexpr Model kModels[] = {{"kajiya-kay", HairMaterial::Model::kKajiyaKay, fal
                              {"marschner", HairMaterial::Model::kMarschner, false},
                              {"zhu", HairMaterial::Model::kZhu, false},
                              {"sadeghi", HairMaterial::Model::kSadeghi, false},
-                             {"dual", HairMaterial::Model::kMarschner, true}};
+                             {"chiang", HairMaterial::Model::kChiang, false},
+                             {"pelekis", HairMaterial::Model::kPelekis, false},
+                             {"dual", HairMaterial::Model::kMarschner, true},
+                             {"dual_pelekis", HairMaterial::Model::kPelekis, true}};
 
 /// Fibers of all directions under a light from above.
 struct Fibers {
@@ -156,6 +159,10 @@ void add_model_cases(Suite& suite, const Model& model) {
 void add_shade_cases(Suite& suite) {
   for (const std::string groom : {"straight50k", "curly50k", "sintel"}) add_groom_cases(suite, groom);
   for (const Model& model : kModels) add_model_cases(suite, model);
+  // What fitted lobes save over the model that they are fitted to.
+  suite.ratios.push_back({"shade.fitted", {"shade.bcsdf_wide.pelekis"}, {"shade.bcsdf_wide.chiang"}});
+  suite.ratios.push_back({"shade.fitted_scalar", {"shade.bcsdf_scalar.pelekis"}, {"shade.bcsdf_scalar.chiang"}});
+  suite.ratios.push_back({"shade.fitted_dual", {"shade.bcsdf_wide.dual_pelekis"}, {"shade.bcsdf_wide.dual"}});
 }
 
 }  // namespace pelage::bench

@@ -178,7 +178,8 @@ void apply_material(const RenderOptions& o, HairMaterial& m) {
                                             {"marschner", HairMaterial::Model::kMarschner},
                                             {"zhu", HairMaterial::Model::kZhu},
                                             {"chiang", HairMaterial::Model::kChiang},
-                                            {"sadeghi", HairMaterial::Model::kSadeghi}});
+                                            {"sadeghi", HairMaterial::Model::kSadeghi},
+                                            {"pelekis", HairMaterial::Model::kPelekis}});
   if (o.hair) apply_hair_color(*o.hair, m);
   if (!o.melanin.empty())
     m.eumelanin = o.melanin[0], m.pheomelanin = o.melanin.size() > 1 ? o.melanin[1] : 0, m.color_source = Source::kMelanin;

@@ -36,7 +36,8 @@ void add_hair_options(CLI::App& verb, RenderOptions& o) {
       ->expected(1, 2)
       ->type_name("E[,P]")
       ->check(CLI::Range(0.0, 100.0));
-  verb.add_option("--model", o.model, "Fiber scattering: kajiya-kay, marschner, zhu, chiang, sadeghi")->type_name("NAME");
+  verb.add_option("--model", o.model, "Fiber scattering: kajiya-kay, marschner, zhu, chiang, sadeghi, pelekis")
+      ->type_name("NAME");
   verb.add_option("--width-scale", o.width_scale, "Multiplies every width")->check(CLI::PositiveNumber);
 }
 

@@ -64,7 +64,7 @@ struct ArtistLobes {
 
 /// Single-fibre scattering and its colour.
 struct HairMaterial {
-  enum class Model { kKajiyaKay, kMarschner, kZhu, kChiang, kSadeghi };
+  enum class Model { kKajiyaKay, kMarschner, kZhu, kChiang, kSadeghi, kPelekis };
   enum class ColorSource { kMelanin, kRgb, kStrand };
   Model model = Model::kMarschner;
   ColorSource color_source = ColorSource::kMelanin;

@@ -180,11 +180,9 @@ Field<HairMaterial> roughness_field(const char* key, const char* about, float Ha
 
 const Fields<HairMaterial>& material_fields() {
   using M = HairMaterial;
-  static const Names<M::Model> models{{"kajiya-kay", M::Model::kKajiyaKay},
-                                      {"marschner", M::Model::kMarschner},
-                                      {"zhu", M::Model::kZhu},
-                                      {"chiang", M::Model::kChiang},
-                                      {"sadeghi", M::Model::kSadeghi}};
+  static const Names<M::Model> models{
+      {"kajiya-kay", M::Model::kKajiyaKay}, {"marschner", M::Model::kMarschner}, {"zhu", M::Model::kZhu},
+      {"chiang", M::Model::kChiang},        {"sadeghi", M::Model::kSadeghi},     {"pelekis", M::Model::kPelekis}};
   static const Names<M::ColorSource> sources{
       {"melanin", M::ColorSource::kMelanin}, {"rgb", M::ColorSource::kRgb}, {"strand", M::ColorSource::kStrand}};
   Field<M> color = vector_field("color", "Linear color of a dense tuft; sets color_source to rgb", &M::color, 0, 1);

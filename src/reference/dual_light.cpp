@@ -25,6 +25,7 @@ Angles angles(const DualPlace& s, Vec3 to_light) {
 Vec3 single(const DualPlace& s, Angles a) {
   if (s.model == Model::kKajiyaKay) return scatter_kajiya_kay(s.lobes, s.tuft_color, a.sin_i, a.cos_i);
   if (s.model == Model::kZhu) return scatter_zhu(s.lobes, a.sin_i, a.cos_i, a.cos_phi);
+  if (s.model == Model::kPelekis) return scatter_pelekis(s.pelekis, a.sin_i, a.cos_phi);
   if (s.model == Model::kSadeghi) return scatter_sadeghi(s.artist, a.sin_i, a.cos_i, a.cos_phi);
   return scatter_marschner(s.lobes, a.sin_i, a.cos_i, a.cos_phi);
 }
@@ -32,6 +33,7 @@ Vec3 single(const DualPlace& s, Angles a) {
 /// The same of light that other fibers scattered forward to it.
 Vec3 forwarded(const DualPlace& s, float variance, Angles a) {
   if (s.model == Model::kZhu) return scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
+  if (s.model == Model::kPelekis) return scatter_dual_forward_pelekis(s.pelekis, variance, a.sin_i, a.cos_phi);
   if (s.model == Model::kSadeghi) return scatter_dual_forward_sadeghi(s.artist, variance, a.sin_i, a.cos_i, a.cos_phi);
   return scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
 }
@@ -71,6 +73,9 @@ DualPlace DualLight::place(std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_
   if (s.model == Model::kSadeghi) {
     s.artist = scatter_prepare_sadeghi(make_artist_fiber(material), scatter_crossing_color(fiber.sigma_a), sin_o, cos_o);
     s.averages = scatter_averages_sadeghi(s.artist);
+  } else if (s.model == Model::kPelekis) {
+    s.pelekis = scatter_prepare_pelekis(fiber, sin_o, cos_o);
+    s.averages = scatter_averages_pelekis(s.pelekis);
   } else {
     s.lobes = prepare_lobes(s.model, fiber, sin_o, cos_o);
     s.averages = scatter_averages(s.lobes);

@@ -20,6 +20,7 @@ struct DualPlace {
   Vec3 tangent, across;          ///< unit length; across: toward the eye in the normal plane
   kernel::ScatterLobes lobes;    ///< of every model but Sadeghi's
   kernel::ScatterArtist artist;  ///< of Sadeghi's
+  kernel::ScatterPelekis pelekis;
   kernel::ScatterAverages averages;
   kernel::ScatterBack back;
   Vec3 tuft_color;  ///< of Kajiya-Kay

@@ -35,6 +35,7 @@ FiberBsdf::Model FiberBsdf::make_model(const FiberView& view) {
     case HairMaterial::Model::kZhu: return fiber_models::Zhu(view);
     case HairMaterial::Model::kChiang: return fiber_models::Chiang(view);
     case HairMaterial::Model::kSadeghi: return fiber_models::Sadeghi(view);
+    case HairMaterial::Model::kPelekis: return fiber_models::Pelekis(view);
     case HairMaterial::Model::kMarschner: break;
   }
   return fiber_models::Marschner(view);

@@ -53,7 +53,7 @@ class FiberBsdf {
 
  private:
   using Model = std::variant<fiber_models::Marschner, fiber_models::Zhu, fiber_models::KajiyaKay, fiber_models::Chiang,
-                             fiber_models::Sadeghi>;
+                             fiber_models::Sadeghi, fiber_models::Pelekis>;
   static Model make_model(const FiberView& view);
   FiberAngles angles(Vec3 to_light) const;
   Vec3 world(const kernel::ScatterDirection& d) const;

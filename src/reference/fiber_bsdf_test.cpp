@@ -18,7 +18,8 @@ namespace {
 
 using Model = HairMaterial::Model;
 constexpr Vec3 kTangent{0, 1, 0};
-constexpr Model kModels[] = {Model::kKajiyaKay, Model::kMarschner, Model::kZhu, Model::kChiang, Model::kSadeghi};
+constexpr Model kModels[] = {Model::kKajiyaKay, Model::kMarschner, Model::kZhu,
+                             Model::kChiang,    Model::kSadeghi,   Model::kPelekis};
 
 struct Case {
   HairMaterial material;
@@ -42,6 +43,7 @@ const char* name_of(Model m) {
     case Model::kMarschner: return "Marschner";
     case Model::kZhu: return "Zhu";
     case Model::kChiang: return "Chiang";
+    case Model::kPelekis: return "Pelekis";
     case Model::kSadeghi: break;
   }
   return "Sadeghi";

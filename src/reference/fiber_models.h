@@ -226,6 +226,27 @@ struct Chiang {
   ScatterChoice choice = scatter_choice_chiang(near);
 };
 
+/// Chiang's far field by fitted lobes: R, TT, TRT and what remains.
+struct Pelekis {
+  explicit Pelekis(const FiberView& v) : lobes(scatter_prepare_pelekis(v.fiber(), v.sin_o, v.cos_o)) {}
+
+  Vec3 value(FiberAngles a) const { return scatter_pelekis(lobes, a.sin_i, m_cos(a.phi)); }
+  float density(FiberAngles a) const { return scatter_pdf_pelekis(lobes, choice, a.sin_i, a.phi); }
+  FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
+  ScatterDirection sample(Vec4 u) const { return scatter_sample_pelekis(lobes, choice, u); }
+  DrawnDirection draw(Vec4 u) const { return draw_weighed(*this, u); }
+  Vec3 albedo() const { return v_splat(lobes.a_r) + lobes.a_tt + lobes.a_trt + lobes.a_rest; }
+  void keep(int lobe) {
+    if (lobe != 0) lobes.a_r = 0;
+    if (lobe != 1) lobes.a_tt = kNone;
+    if (lobe != 2) lobes.a_trt = kNone;
+    if (lobe != 3) lobes.a_rest = kNone;
+  }
+
+  ScatterPelekis lobes;
+  ScatterChoice choice = scatter_choice_pelekis(lobes);
+};
+
 /// R, TT, TRT without glints, and the glints, which count as what remains.
 struct Sadeghi {
   explicit Sadeghi(const FiberView& v)

@@ -102,11 +102,12 @@ struct ShadePlace {
   Vec3 position, tangent;
   Vec3 across_o;  // direction to the eye in the normal plane, unit length
   ScatterFiber fiber;
-  ScatterLobes lobes;    // of every model but Sadeghi's
-  ScatterArtist artist;  // of Sadeghi's
-  ScatterAverages averages;
-  ScatterBack back;
-  Vec3 tuft_color;  // of Kajiya-Kay
+  ScatterLobes lobes;        // of Marschner's kinds of lobes
+  ScatterArtist artist;      // of Sadeghi's
+  ScatterPelekis pelekis;    // of Pelekis'
+  ScatterAverages averages;  // with dual scattering
+  ScatterBack back;          //
+  Vec3 tuft_color;           // of what has a diffuse lobe
 };
 
 // Lobes of the models that have Marschner's kinds. Chiang's model is near-field: its mean over the fiber is shaded with.
@@ -141,15 +142,19 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   s.fiber = scatter_fiber(Float(material.eta), Float(material.beta_longitudinal), Float(material.beta_azimuthal),
                           Float(material.cuticle_tilt), Float(material.specular_gain), absorption);
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
-  s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
+  const bool diffuse = material.model == HairMaterial::Model::kKajiyaKay || material.model == HairMaterial::Model::kPelekis;
+  if (diffuse && !k.dual_scattering) s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
   if (material.model == HairMaterial::Model::kSadeghi) {
     s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), scatter_crossing_color(absorption), sin_o, cos_o);
-    s.averages = scatter_averages_sadeghi(s.artist);
+    if (k.dual_scattering) s.averages = scatter_averages_sadeghi(s.artist);
+  } else if (material.model == HairMaterial::Model::kPelekis) {
+    s.pelekis = scatter_prepare_pelekis(s.fiber, sin_o, cos_o);
+    if (k.dual_scattering) s.averages = scatter_averages_pelekis(s.pelekis);
   } else {
     s.lobes = shade_lobes(material.model, s.fiber, sin_o, cos_o);
-    s.averages = scatter_averages(s.lobes);
+    if (k.dual_scattering) s.averages = scatter_averages(s.lobes);
   }
-  s.back = scatter_back(s.averages, sin_o, cos_o);
+  if (k.dual_scattering) s.back = scatter_back(s.averages, sin_o, cos_o);
   return s;
 }
 
@@ -175,12 +180,23 @@ PELAGE_LANES_FN Lobes shade_widened(Lobes l, Float variance) {
   return l;
 }
 
+PELAGE_LANES_FN ScatterPelekis shade_widened(ScatterPelekis l, Float variance) {
+  l.r = scatter_band_widened(l.r, variance);
+  l.tt = scatter_band_widened(l.tt, variance);
+  l.trt = scatter_band_widened(l.trt, variance);
+  return l;
+}
+
 // f·cos of the fiber itself under a light of some spread.
 PELAGE_LANES_FN Vec3 shade_single(HairMaterial::Model model, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
   const Float spread(light.spread2);
   if (model == HairMaterial::Model::kSadeghi) {
     if (light.wide) return scatter_dual_forward_sadeghi(s.artist, spread, a.sin_i, a.cos_i, a.cos_phi);
     return scatter_sadeghi(light.spread2 > 0 ? shade_widened(s.artist, spread) : s.artist, a.sin_i, a.cos_i, a.cos_phi);
+  }
+  if (model == HairMaterial::Model::kPelekis) {
+    if (light.wide) return scatter_dual_forward_pelekis(s.pelekis, spread, a.sin_i, a.cos_phi);
+    return scatter_pelekis(light.spread2 > 0 ? shade_widened(s.pelekis, spread) : s.pelekis, a.sin_i, a.cos_phi);
   }
   const ScatterLobes lobes = light.spread2 > 0 ? shade_widened(s.lobes, spread) : s.lobes;
   if (model == HairMaterial::Model::kKajiyaKay) return scatter_kajiya_kay(lobes, s.tuft_color, a.sin_i, a.cos_i);
@@ -196,6 +212,8 @@ PELAGE_LANES_FN Vec3 shade_forwarded(HairMaterial::Model model, const ShadePlace
   Vec3 forward;
   if (model == HairMaterial::Model::kSadeghi)
     forward = scatter_dual_forward_sadeghi(s.artist, variance, a.sin_i, a.cos_i, a.cos_phi);
+  else if (model == HairMaterial::Model::kPelekis)
+    forward = scatter_dual_forward_pelekis(s.pelekis, variance, a.sin_i, a.cos_phi);
   else if (model == HairMaterial::Model::kZhu)
     forward = scatter_dual_forward_zhu(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
   else forward = scatter_dual_forward_marschner(s.lobes, variance, a.sin_i, a.cos_i, a.cos_phi);
@@ -221,6 +239,12 @@ PELAGE_LANES_FN Vec3 shade_kajiya_kay_transmittance(const ShadePlace& s, Float n
   return v_exp((s.tuft_color * Float(0.5f) - v_splat(Float(1.0f))) * n);
 }
 
+// What Pelekis' model has for multiple scattering where dual scattering is off: Kajiya-Kay's diffuse lobe, dimmed like it.
+PELAGE_LANES_FN Vec3 shade_diffused(HairMaterial::Model model, const ShadePlace& s, Float n, ShadeAngles a) {
+  if (model != HairMaterial::Model::kPelekis) return v_splat(Float(0.0f));
+  return scatter_pelekis_diffused(s.tuft_color, a.cos_i) * shade_kajiya_kay_transmittance(s, n);
+}
+
 PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light) {
   const ShadeIllumination i = shade_illuminate(light, s.position);
   const ShadeAngles a = shade_angles(s, i.to_light);
@@ -229,7 +253,7 @@ PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, c
   const Vec3 single = shade_single(k.material.model, s, light, a);
   if (k.material.model == HairMaterial::Model::kKajiyaKay) return arriving * single * shade_kajiya_kay_transmittance(s, n);
   const Vec3 direct = single * scatter_dual_direct(n);
-  if (!k.dual_scattering) return arriving * direct;
+  if (!k.dual_scattering) return arriving * (direct + shade_diffused(k.material.model, s, n, a));
   const Float spread(light.spread2);
   const Vec3 local = scatter_dual_local(s.back, spread, a.sin_i, a.cos_i, a.cos_phi) * scatter_dual_direct(n);
   const Vec3 forwarded = shade_forwarded(k.material.model, s, scatter_dual_variance(n, s.averages.v_f) + spread, a);

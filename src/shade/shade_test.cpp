@@ -154,6 +154,9 @@ TEST(Shade, LoneStrandEqualsItsModel) {
     const kernel::ScatterArtist artist = kernel::scatter_prepare_sadeghi(
         make_artist_fiber(material), kernel::scatter_crossing_color(fiber.sigma_a), sin_o, cos_o);
     close(lone_strand(HairMaterial::Model::kSadeghi, travels), kernel::scatter_sadeghi(artist, sin_i, cos_i, cos_phi));
+    close(lone_strand(HairMaterial::Model::kPelekis, travels),
+          kernel::scatter_pelekis(kernel::scatter_prepare_pelekis(fiber, sin_o, cos_o), sin_i, cos_phi) +
+              kernel::scatter_pelekis_diffused(tuft, cos_i));
   }
 }
 
@@ -175,36 +178,45 @@ TEST(Shade, SameBitsForAnyThreadsAndInstructionSet) {
   set_isa("");
 }
 
+/// Strands here and there, of any direction and color.
+ShadeBatch random_batch() {
+  ShadeBatch batch;
+  batch.count = 203;
+  for (std::uint32_t i = 0; i < ShadeBatch::kSize + ShadeBatch::kPadding; ++i) {
+    Rng rng(1, i);
+    const auto around = [&] { return 0.3f * rng.uniform() - 0.15f; };
+    const Vec3 tangent = normalize({around(), around(), around()}), eye = normalize({around(), around(), 0.2f});
+    batch.px[i] = around(), batch.py[i] = around(), batch.pz[i] = around();
+    batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
+    batch.ex[i] = eye.x, batch.ey[i] = eye.y, batch.ez[i] = eye.z;
+    batch.absorb_r[i] = rng.uniform(), batch.absorb_g[i] = rng.uniform(), batch.absorb_b[i] = rng.uniform();
+  }
+  return batch;
+}
+
+/// evaluate() on every instruction set against evaluate_scalar(), bit for bit.
+void expect_wide_equals_scalar(const ShadeConstants& constants) {
+  ShadeBatch batch = random_batch(), scalar = batch;
+  evaluate_scalar(constants, scalar);
+  for (const std::string& isa : available_isas()) {
+    set_isa(isa);
+    evaluate(constants, batch);
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      EXPECT_EQ(batch.r[i], scalar.r[i]) << isa << " " << i;
+      EXPECT_EQ(batch.g[i], scalar.g[i]) << isa << " " << i;
+      EXPECT_EQ(batch.b[i], scalar.b[i]) << isa << " " << i;
+      EXPECT_TRUE(std::isfinite(scalar.r[i]) && scalar.r[i] >= 0);
+    }
+  }
+  set_isa("");
+}
+
 TEST(Shade, WideEqualsScalar) {
   for (const auto model : {HairMaterial::Model::kKajiyaKay, HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu,
-                           HairMaterial::Model::kChiang, HairMaterial::Model::kSadeghi}) {
+                           HairMaterial::Model::kChiang, HairMaterial::Model::kSadeghi, HairMaterial::Model::kPelekis}) {
     const Scene scene = thicket(model);
     const LightRig rig = prepare_lights(scene, MeshTracer({}));
-    const ShadeConstants constants = shade_constants(scene.grooms[0].material, true, rig);
-    ShadeBatch batch;
-    batch.count = 203;
-    for (std::uint32_t i = 0; i < ShadeBatch::kSize + ShadeBatch::kPadding; ++i) {
-      Rng rng(1, i);
-      const auto around = [&] { return 0.3f * rng.uniform() - 0.15f; };
-      const Vec3 tangent = normalize({around(), around(), around()}), eye = normalize({around(), around(), 0.2f});
-      batch.px[i] = around(), batch.py[i] = around(), batch.pz[i] = around();
-      batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
-      batch.ex[i] = eye.x, batch.ey[i] = eye.y, batch.ez[i] = eye.z;
-      batch.absorb_r[i] = rng.uniform(), batch.absorb_g[i] = rng.uniform(), batch.absorb_b[i] = rng.uniform();
-    }
-    ShadeBatch scalar = batch;
-    evaluate_scalar(constants, scalar);
-    for (const std::string& isa : available_isas()) {
-      set_isa(isa);
-      evaluate(constants, batch);
-      for (std::size_t i = 0; i < batch.count; ++i) {
-        EXPECT_EQ(batch.r[i], scalar.r[i]) << isa << " " << i;
-        EXPECT_EQ(batch.g[i], scalar.g[i]) << isa << " " << i;
-        EXPECT_EQ(batch.b[i], scalar.b[i]) << isa << " " << i;
-        EXPECT_TRUE(std::isfinite(scalar.r[i]) && scalar.r[i] >= 0);
-      }
-    }
-    set_isa("");
+    for (const bool dual : {true, false}) expect_wide_equals_scalar(shade_constants(scene.grooms[0].material, dual, rig));
   }
 }
 

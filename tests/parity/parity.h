@@ -128,3 +128,13 @@ PELAGE_FN Vec4 parity_draw_sadeghi(ScatterArtist l, Vec4 u) {
   ScatterDirection d = scatter_sample_sadeghi(l, c, u);
   return parity_drawn(d, scatter_pdf_sadeghi(l, c, d.sin_i, d.cos_i, d.phi));
 }
+
+PELAGE_FN ScatterPelekis parity_pelekis(Float theta_o, Float beta_m, Float beta_n, Float eumelanin, Float eta, Float tilt) {
+  return scatter_prepare_pelekis(parity_fiber(beta_m, beta_n, eumelanin, eta, tilt), m_sin(theta_o), m_cos(theta_o));
+}
+PELAGE_FN Vec4 parity_pelekis_energies(ScatterPelekis l) { return Vec4(l.a_r, l.a_tt.x, l.a_trt.y, l.a_rest.z); }
+PELAGE_FN Vec4 parity_draw_pelekis(ScatterPelekis l, Vec4 u) {
+  ScatterChoice c = scatter_choice_pelekis(l);
+  ScatterDirection d = scatter_sample_pelekis(l, c, u);
+  return parity_drawn(d, scatter_pdf_pelekis(l, c, d.sin_i, d.phi));
+}

@@ -24,18 +24,20 @@ struct ScatterBack {
 
 PELAGE_FN Float scatter_mean_channel(Vec3 c) { return (c.x + c.y + c.z) * Float(0.333333333333333f); }
 
-// Fills in the mean variances and shifts of three cones, weighted with what they send forward (f) and backward (b).
-PELAGE_FN ScatterAverages scatter_mean_cones(ScatterAverages energies, ScatterCone r, Float r_f, Float r_b, ScatterCone tt,
-                                             Float tt_f, Float tt_b, ScatterCone trt, Float trt_f, Float trt_b) {
+// Fills in the mean variances and shifts of three longitudinal lobes, weighted with what they send forward (f) and
+// backward (b). r, tt, trt: (variance, shift) of each.
+PELAGE_FN ScatterAverages scatter_mean_cones(ScatterAverages energies, Vec2 r, Float r_f, Float r_b, Vec2 tt, Float tt_f,
+                                             Float tt_b, Vec2 trt, Float trt_f, Float trt_b) {
   ScatterAverages a = energies;
   Float inv_f = Float(1.0f) / max(r_f + tt_f + trt_f, Float(1.0e-30f));
   Float inv_b = Float(1.0f) / max(r_b + tt_b + trt_b, Float(1.0e-30f));
-  a.v_f = (r_f * r.v + tt_f * tt.v + trt_f * trt.v) * inv_f;
-  a.v_b = (r_b * r.v + tt_b * tt.v + trt_b * trt.v) * inv_b;
-  a.shift_f = (r_f * r.shift + tt_f * tt.shift + trt_f * trt.shift) * inv_f;
-  a.shift_b = (r_b * r.shift + tt_b * tt.shift + trt_b * trt.shift) * inv_b;
+  a.v_f = (r_f * r.x + tt_f * tt.x + trt_f * trt.x) * inv_f;
+  a.v_b = (r_b * r.x + tt_b * tt.x + trt_b * trt.x) * inv_b;
+  a.shift_f = (r_f * r.y + tt_f * tt.y + trt_f * trt.y) * inv_f;
+  a.shift_b = (r_b * r.y + tt_b * tt.y + trt_b * trt.y) * inv_b;
   return a;
 }
+PELAGE_FN Vec2 scatter_spread(ScatterCone c) { return Vec2(c.v, c.shift); }
 
 // Averages over the front and back half circles of the lobes (Zinke 2008, eq. 6). `rest` is isotropic in azimuth.
 PELAGE_FN ScatterAverages scatter_averages(ScatterLobes l) {
@@ -50,8 +52,29 @@ PELAGE_FN ScatterAverages scatter_averages(ScatterLobes l) {
   a.a_f = v_splat(r_f) + tt_f + trt_f + half_rest;
   a.a_b = v_splat(r_b) + tt_b + trt_b + half_rest;
   Float rest = scatter_mean_channel(half_rest);
-  return scatter_mean_cones(a, l.r, r_f, r_b, l.tt, scatter_mean_channel(tt_f), scatter_mean_channel(tt_b), l.trt,
-                            scatter_mean_channel(trt_f) + rest, scatter_mean_channel(trt_b) + rest);
+  return scatter_mean_cones(a, scatter_spread(l.r), r_f, r_b, scatter_spread(l.tt), scatter_mean_channel(tt_f),
+                            scatter_mean_channel(tt_b), scatter_spread(l.trt), scatter_mean_channel(trt_f) + rest,
+                            scatter_mean_channel(trt_b) + rest);
+}
+
+// The same of the lobes of pelekis.h.
+PELAGE_FN ScatterAverages scatter_averages_pelekis(ScatterPelekis l) {
+  Float even = Float(1.0f) - l.shoulder - l.rim;
+  Float r_f =
+      l.a_r * (even * Float(kPelekisEvenFront) + l.shoulder * Float(kPelekisShoulderFront) + l.rim * Float(kPelekisRimFront));
+  Float r_b = l.a_r - r_f;
+  Vec3 half_rest = l.a_rest * Float(0.5f);
+  Vec3 tt_f = l.a_tt * scatter_fringe_near(l.n_tt);
+  Vec3 trt_b = l.a_trt * scatter_fringe_near(l.n_trt);
+  Vec3 tt_b = l.a_tt - tt_f;
+  Vec3 trt_f = l.a_trt - trt_b;
+  ScatterAverages a;
+  a.a_f = v_splat(r_f) + tt_f + trt_f + half_rest;
+  a.a_b = v_splat(r_b) + tt_b + trt_b + half_rest;
+  Float rest = scatter_mean_channel(half_rest);
+  return scatter_mean_cones(a, Vec2(l.r.v, l.r.shift), r_f, r_b, Vec2(l.tt.v, l.tt.shift), scatter_mean_channel(tt_f),
+                            scatter_mean_channel(tt_b), Vec2(l.trt.v, l.trt.shift), scatter_mean_channel(trt_f) + rest,
+                            scatter_mean_channel(trt_b) + rest);
 }
 
 // The same of Sadeghi's lobes: they do not depend on theta.
@@ -66,8 +89,9 @@ PELAGE_FN ScatterAverages scatter_averages_sadeghi(ScatterArtist l) {
   ScatterAverages a;
   a.a_f = r_f + tt_f + trt_f;
   a.a_b = r_b + tt_b + trt_b;
-  return scatter_mean_cones(a, l.r, scatter_mean_channel(r_f), scatter_mean_channel(r_b), l.tt, scatter_mean_channel(tt_f),
-                            scatter_mean_channel(tt_b), l.trt, scatter_mean_channel(trt_f), scatter_mean_channel(trt_b));
+  return scatter_mean_cones(a, scatter_spread(l.r), scatter_mean_channel(r_f), scatter_mean_channel(r_b), scatter_spread(l.tt),
+                            scatter_mean_channel(tt_f), scatter_mean_channel(tt_b), scatter_spread(l.trt),
+                            scatter_mean_channel(trt_f), scatter_mean_channel(trt_b));
 }
 
 // A_B of one channel: one (A_1) or three (A_3) backward events among any number of forward ones.
@@ -145,6 +169,21 @@ PELAGE_FN Vec3 scatter_dual_forward_zhu(ScatterLobes l, Float v, Float sin_i, Fl
   Float tt = scatter_cone_value(scatter_cone_widened(l.tt, v), sin_i, cos_i) *
              scatter_half_circle(-scatter_pair_sharpness(l.n_tt), cos_phi);
   return v_splat(r) + l.a_tt * tt + l.a_rest * scatter_diffuse(cos_i);
+}
+// A fringe has the curvature of a von Mises lobe of kappa = 5/width^2 where it is narrow, and its first harmonic,
+// kappa = 4/width, where it is wide.
+PELAGE_FN Float scatter_fringe_sharpness(ScatterFringe n) {
+  Float inv = n.width * n.width / (Float(5.0f) + Float(4.0f) * n.width) + Float(2.0f) * (Float(1.0f) - n.cos_mu);
+  Float kappa = Float(1.0f) / inv;
+  return min(Float(1.27323954f) * kappa, Float(1.59576912f) * sqrt(kappa));
+}
+PELAGE_FN Vec3 scatter_dual_forward_pelekis(ScatterPelekis l, Float v, Float sin_i, Float cos_phi) {
+  Float r = scatter_band_value(scatter_band_widened(l.r, v), sin_i) * l.a_r * scatter_reflection_averaged(cos_phi);
+  Float tt = scatter_band_value(scatter_band_widened(l.tt, v), sin_i) *
+             scatter_half_circle(-scatter_fringe_sharpness(l.n_tt), cos_phi);
+  Float m_trt = scatter_band_value(scatter_band_widened(l.trt, v), sin_i);
+  Float trt = m_trt * scatter_half_circle(scatter_fringe_sharpness(l.n_trt), cos_phi);
+  return v_splat(r) + l.a_tt * tt + l.a_trt * trt + l.a_rest * (m_trt * Float(kInvTwoPi));
 }
 
 PELAGE_FN Vec3 scatter_dual_forward_sadeghi(ScatterArtist l, Float v, Float sin_i, Float cos_i, Float cos_phi) {
