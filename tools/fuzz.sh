@@ -9,7 +9,7 @@ CXX=${CXX:-clang++-14} cmake --preset fuzz > /dev/null
 cmake --build --preset fuzz --target fuzzers
 build=build/fuzz
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(cyhair pelage tressfx tressfx3 usc mesh_obj mesh_ply mesh_glb mesh_tfxmesh scene
+[ ${#targets[@]} -gt 0 ] || targets=(cyhair pelage tressfx tressfx3 usc mesh_obj mesh_ply mesh_glb mesh_tfxmesh hair_mesh hair_mesh_text scene
                                image_png image_jpeg image_exr image_hdr)
 $build/tests/fuzz/fuzz_corpus $build/corpus
 mkdir -p $build/findings

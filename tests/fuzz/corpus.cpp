@@ -5,6 +5,8 @@
 #include <fstream>
 #include <string>
 
+#include "kit/hair_mesh_kit.h"
+
 namespace {
 
 using namespace pelage;
@@ -91,6 +93,12 @@ int main(int argc, char** argv) {
   old[2] = old[3] = 0x40, old[4] = 2, old[8] = 2, old[144] = 0x28, old[145] = 1;
   const float points[12] = {0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0};
   spill(folder("tressfx3") + "small", old + std::string(reinterpret_cast<const char*>(points), sizeof points));
+#if PELAGE_HAIRMESH
+  write_hair_mesh(folder("hair_mesh") + "small.hairmesh", kit::two_bundles(2));
+  write_hair_mesh(folder("hair_mesh") + "exact.hairmesh", kit::two_bundles(),
+                  {.float_positions = true, .wide_attributes = true});
+  write_hair_mesh(folder("hair_mesh_text") + "small.json", kit::two_bundles(2));
+#endif
   write_mesh(folder("mesh_obj") + "quad.obj", quad());
   write_mesh(folder("mesh_ply") + "quad.ply", quad());
   spill(folder("mesh_ply") + "ascii",

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/hair_mesh_formats.h"
 #include "io/image_formats.h"
 #include "io/mesh_formats.h"
 #include "io/scene_tables.h"
@@ -68,6 +69,35 @@ inline void read_sealed_groom(std::span<std::byte> bytes) {
   read_groom(bytes);
 }
 
+/// Either file of a hair mesh: what comes back satisfies validate(), or an Error has said why not. PELAGE_HAIRMESH=OFF has neither.
+inline void read_hair_mesh([[maybe_unused]] std::span<const std::byte> bytes) {
+#if PELAGE_HAIRMESH
+  try {
+    const HairMesh mesh = io::read_hair_mesh(io::ByteSource("fuzz", bytes));
+    try {
+      validate(mesh, "fuzz");
+    } catch (const Error&) {
+      std::abort();  // the reader's promise is broken
+    }
+  } catch (const Error&) {
+  }
+#endif
+}
+
+/// A `.hairmesh` file made consistent first: its size and checksum are set right.
+inline void read_sealed_hair_mesh([[maybe_unused]] std::span<std::byte> bytes) {
+#if PELAGE_HAIRMESH
+  constexpr std::size_t kHeader = 56;  // docs/formats.md
+  if (bytes.size() >= kHeader) {
+    const std::uint64_t size = bytes.size();
+    std::memcpy(bytes.data() + 40, &size, sizeof size);
+    const std::uint64_t checksum = io::hair_mesh_checksum({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    std::memcpy(bytes.data() + 48, &checksum, sizeof checksum);
+  }
+  read_hair_mesh(bytes);
+#endif
+}
+
 /// A scene file's text alone: nothing that it names is loaded.
 inline void read_scene(std::span<const std::byte> bytes) {
   const auto* const text = reinterpret_cast<const char*>(bytes.data());
@@ -111,6 +141,7 @@ inline void read_hdr(std::span<const std::byte> bytes) {
 /// Calls the reader for a corpus file named `<reader>-<anything>`.
 inline void replay(std::string_view name, std::span<const std::byte> bytes) {
   if (name.starts_with("mesh")) read_mesh(bytes);
+  else if (name.starts_with("hair_mesh")) read_hair_mesh(bytes);
   else if (name.starts_with("scene")) read_scene(bytes);
   else if (name.starts_with("image_png")) read_png(bytes);
   else if (name.starts_with("image_jpeg")) read_jpeg(bytes);

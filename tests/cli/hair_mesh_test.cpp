@@ -1,0 +1,94 @@
+// Hair meshes on the command line: made, told about, turned into each other and into strands, and drawn.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pelage/io.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/cli_kit.h"
+
+namespace pelage {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+class CliHairMesh : public Cli {
+ protected:
+  void make_bob() const {
+    const Outcome made = run("grow --hair-mesh bob --strands 2000 --seed 3 -o bob.hairmesh");
+    ASSERT_EQ(made.status, 0) << made.err;
+    EXPECT_THAT(made.out, HasSubstr("2000 strands in 200 bundles"));
+  }
+};
+
+TEST_F(CliHairMesh, InfoSaysWhatItHolds) {
+  make_bob();
+  const Outcome outcome = run("info --json bob.hairmesh");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  const HairMesh mesh = read_hair_mesh(in("bob.hairmesh").string());
+  EXPECT_EQ(json["kind"], "hair mesh");
+  EXPECT_EQ(json["format"], "binary");
+  EXPECT_EQ(json["strands"], 2000);
+  EXPECT_EQ(json["bundles"], mesh.bundles.size());
+  EXPECT_EQ(json["columns"], mesh.column_count());
+  EXPECT_EQ(json["vertices"], mesh.vertex_count());
+  EXPECT_EQ(json["occlusion"], true);
+  EXPECT_EQ(json["styles"][0][0]["kind"], "length");
+  EXPECT_EQ(json["file_bytes"], fs::file_size(in("bob.hairmesh")));
+  EXPECT_THAT(run("info bob.hairmesh").out,
+              AllOf(HasSubstr("binary hair mesh"), HasSubstr("clump amount"), HasSubstr("bob, seed 3")));
+}
+
+TEST_F(CliHairMesh, BothFilesAndStrandsComeFromEither) {
+  make_bob();
+  ASSERT_EQ(run("convert bob.hairmesh bob.json").status, 0);
+  EXPECT_EQ(Json::parse(run("info --json bob.json").out)["format"], "text");
+  ASSERT_EQ(run("convert bob.json back.hairmesh").status, 0);
+  EXPECT_EQ(slurp(in("back.hairmesh")), slurp(in("bob.hairmesh")));
+  ASSERT_EQ(run("convert bob.json exact.hairmesh --exact").status, 0);
+  EXPECT_GT(fs::file_size(in("exact.hairmesh")), fs::file_size(in("bob.hairmesh")));
+
+  ASSERT_EQ(run("convert bob.hairmesh bob.pelage").status, 0);
+  ASSERT_EQ(run("convert bob.json half.pelage --points 100 --share 0.5").status, 0);
+  const StrandSet all = read_strands(in("bob.pelage").string()), half = read_strands(in("half.pelage").string());
+  EXPECT_EQ(all.strand_count(), 2000u);
+  EXPECT_EQ(all.point_count(), 2000u * 64);
+  EXPECT_NEAR(static_cast<double>(half.strand_count()), 1000, 110);  // rounded up in each of 200 bundles
+  EXPECT_EQ(half.point_count(), half.strand_count() * 100);
+}
+
+TEST_F(CliHairMesh, IsDrawnAsItsStrands) {
+  make_bob();
+  ASSERT_EQ(run("convert bob.hairmesh bob.pelage").status, 0);
+  const std::string options = " --size 40x40 --spp 1 --no-shadows";
+  const Outcome drawn = run("render bob.hairmesh -o mesh.png" + options);
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(drawn.err + drawn.out, HasSubstr("mannequin"));
+  ASSERT_EQ(run("render bob.pelage -o strands.png" + options).status, 0);
+  EXPECT_EQ(slurp(in("mesh.png")), slurp(in("strands.png")));
+  std::ofstream(in("scene.json")) << R"({"grooms": [{"file": "bob.hairmesh"}], "settings": {"width": 16, "height": 16}})";
+  EXPECT_EQ(run("render scene.json -o scene.png").status, 0);
+}
+
+TEST_F(CliHairMesh, MistakesAreNamed) {
+  Outcome outcome = run("grow --hair-mesh bop -o a.hairmesh");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean \"bob\""));
+  outcome = run("grow --hair-mesh bob --length 0.3 -o a.hairmesh");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--length-scale"));
+  EXPECT_EQ(run("grow --hair-mesh bob -o a.png").status, 1);
+  EXPECT_EQ(run("grow --hair-mesh bob").status, 2);
+  EXPECT_EQ(run("grow -o a.hairmesh").status, 2);
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(CliHairMesh, SchemaIsPrinted) {
+  EXPECT_EQ(Json::parse(run("grow --hair-mesh-schema").out)["title"], "Pelage hair mesh");
+}
+
+}  // namespace
+}  // namespace pelage
