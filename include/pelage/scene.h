@@ -1,6 +1,7 @@
 // What is seen, from where, in which light: the one description that every renderer of Pelage reads.
 #pragma once
 
+#include <pelage/hair_mesh.h>
 #include <pelage/image.h>
 #include <pelage/strand_set.h>
 #include <pelage/triangle_mesh.h>
@@ -79,9 +80,12 @@ struct HairMaterial {
   ArtistLobes artist;                            ///< of kSadeghi, which has no use for eta, tilt, gain and beta_longitudinal
 };
 
+/// A groom: strands, or a hair mesh that they are made from.
 struct GroomInstance {
   std::string name;
-  std::shared_ptr<const StrandSet> strands;
+  std::shared_ptr<const StrandSet> strands;   ///< null where expand_hair_meshes() has not been there yet
+  std::shared_ptr<const HairMesh> hair_mesh;  ///< or null. Method::kSwr draws it as it is, everything else its strands
+  float lod_lambda = 3;                       ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
   HairMaterial material;
   Affine transform;       ///< object to world; similarity (rotation, translation, one scale)
   float width_scale = 1;  ///< multiplies every width
@@ -130,6 +134,7 @@ enum class Method {
   kLink,     ///< one sample a pixel, then strand linking and its filter (Huang 2025); see `link`
   kLinkTaa,  ///< kTaa of frames that are made by kLink
   kOidn,     ///< one sample in the middle of the pixel, then Open Image Denoise, in builds that have it
+  kSwr,      ///< deferred software rasterization of hair meshes (Lipp 2026), 1, 2, 4 or 8 samples; see `swr`
 };
 
 /// Where the opacity of hair that strand linking has found comes from.
@@ -159,6 +164,29 @@ struct LinkSettings {
   float sigma_color = INFINITY;     ///< σ_c of eq. 11, linear radiance
 };
 
+/// Where the opacity of a pixel of method swr comes from.
+enum class SwrAlpha {
+  kRatio,     ///< center hits over conservative hits along the strand; Lipp 2026, §3.3.3
+  kCoverage,  ///< exact area of the strands, by another layer of raster
+};
+
+/// Deferred software rasterization of hair meshes, of Method::kSwr: the symbols of Lipp 2026 (docs/methods.md).
+struct SwrSettings {
+  bool lod = true;                   ///< fewer strands and points of bundles that are small on the screen: eq. 1 to 5
+  int points = 127;                  ///< C_max of eq. 4: control points of a strand at full detail, 3…127
+  bool thicken = true;               ///< strands that stay take over the width of those that are left out; false: as published
+  bool depth_correction = true;      ///< eq. 8: of light that comes through strands that were left out
+  bool filter = true;                ///< reconnection filter, of pictures of one sample; false: samples as they are
+  int radius = 5;                    ///< r of §3.3.1, pixels, 1…15
+  float s_parallel = 0.7f;           ///< s∥: σ∥ = r·s∥
+  float s_perpendicular = 0.12f;     ///< s⊥: σ⊥ = r·s⊥
+  float sigma_color = 0.9f;          ///< σ_c of eq. 10, linear radiance
+  float depth_tolerance = 1.45e-3f;  ///< neighbors farther off than this share of the hair's depth do not count
+  float connect_depth = 5e-4f;  ///< share of the hair's depth from which a strand in front of the pixel's own is another one
+  float strip = 0.5f;           ///< w_strip, pixels: half the width of the strip in which hits are counted
+  SwrAlpha alpha = SwrAlpha::kRatio;
+};
+
 struct RenderSettings {
   int width = 1024, height = 1024;  ///< pixels, 1…16384
   Method method = Method::kMsaa;
@@ -167,6 +195,7 @@ struct RenderSettings {
   int frames = 16;  ///< kTaa and kLinkTaa: frames that a still camera takes for one picture, 1…4096
   AlphaSource alpha = AlphaSource::kSamples;
   LinkSettings link;
+  SwrSettings swr;
   View view = View::kBeauty;
   float exposure = 0;  ///< stops
   ToneMap tone_map = ToneMap::kAces;
@@ -187,6 +216,10 @@ struct Scene {
   std::vector<MeshInstance> meshes;
   RenderSettings settings;
 };
+
+/// Gives every groom that has a hair mesh and no strands those of the mesh at full detail. trace() and render() do it by
+/// themselves, but for Method::kSwr.
+void expand_hair_meshes(Scene& scene, const Progress& progress = {});
 
 /// Box of all grooms and meshes in world space.
 Bounds bounds(const Scene& scene);

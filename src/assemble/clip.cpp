@@ -6,9 +6,7 @@
 namespace pelage {
 namespace {
 
-struct Point {
-  double x, y, z, radius;
-};
+using Point = ClipPoint;
 
 /// Signed "distances" from the five planes; all ≥ 0 inside. Linear in camera space, so a cut is a ratio of two.
 std::array<double, 5> distances(const CameraView& v, const Point& p) {
@@ -45,6 +43,14 @@ void append(ScreenBlock& block, const CameraView& view, const Point& p, std::uin
 }
 
 }  // namespace
+
+bool clip_segment(const CameraView& view, ClipPoint& a, ClipPoint& b) {
+  double t0, t1;
+  if (!inside_part(view, a, b, t0, t1)) return false;
+  const ClipPoint from = t0 == 0 ? a : lerp(a, b, t0);
+  b = lerp(a, b, t1), a = from;
+  return true;
+}
 
 void clip(const AssembleJob& job, ScreenBlock& block) {
   struct Input {

@@ -9,4 +9,11 @@ namespace pelage {
 /// band, in double precision. Segments outside vanish; a strand that comes back starts a new run of points. Ids stay.
 void clip(const AssembleJob& job, ScreenBlock& block);
 
+/// A point in camera space, metres.
+struct ClipPoint {
+  double x, y, z, radius;
+};
+/// Cuts the segment a → b to what lies inside; false where nothing does.
+bool clip_segment(const CameraView& view, ClipPoint& a, ClipPoint& b);
+
 }  // namespace pelage

@@ -45,18 +45,21 @@ struct SegmentNumbering {
 
 /// A run of projected polyline points, on its way from assemble to raster: a few thousand, then reused.
 ///
-/// Point j and point j+1 bound a segment where `id[j] != kNoSegment`. Bands are camera-facing; kernel/raster/band.h
+/// Point j and point j + stride bound a segment where `id[j] != kNoSegment`. Bands are camera-facing; kernel/raster/band.h
 /// says which points of the screen a band covers. The line through point j across (cap_x, cap_y) is where the band of
 /// one segment ends and that of the next begins, so neighbours share an edge exactly.
 struct ScreenBlock {
   static constexpr std::uint32_t kNoSegment = 0xffffffffu;
   static constexpr std::size_t kPadding = 64;  ///< valid floats behind the points, for whole-lane loads
   std::size_t count = 0;                       ///< points in use; arrays hold kPadding more behind them
+  std::size_t stride = 1;                      ///< from a point to the next one of its strand
   Buffer<float> x, y;                          ///< pixels; may lie outside the image, at most kGuardBand from it
   Buffer<float> depth;                         ///< camera-space z, metres; ≥ near_plane (clipped)
   Buffer<float> radius;                        ///< pixels, half the band's width
   Buffer<float> cap_x, cap_y;  ///< direction of the strand at the point, halfway between its two segments; any length
   Buffer<std::uint32_t> id;    ///< id of the segment that starts here, kNoSegment at a strand's last point
+  Buffer<std::uint32_t> payload_high,
+      payload_low;  ///< of strands of hair meshes: bits 39…32 and 31…0 of a DeferredBuffer's pixel
 };
 
 /// 64-bit pixel of the nearest-wins layers. A smaller key is nearer; equal depths are settled by the id, so the

@@ -6,19 +6,13 @@
 // to be prefetched. Only what passes goes on to the atomic minimum.
 #include "raster/fragments.h"
 
-#include <hwy/cache_control.h>
-
-#include <algorithm>
-
-#include "raster/keys.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/center_wide.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include "kernel/wide-inl.h"
-#include "raster/compress-inl.h"
+#include "raster/fragments-inl.h"
 #include "raster/segment_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,55 +22,13 @@ namespace {
 
 using wide::Float;
 using wide::Mask;
-using Ints = hn::Vec<wide::IntTag>;
 using Uints = hn::Vec<wide::UintTag>;
-
-/// Bit l of the result tells whether fragment l may pass the depth test of its key as it is now.
-HWY_INLINE std::uint64_t passing(const std::uint32_t* pixel, const float* depth, const PixelKey* keys) {
-  std::uint64_t bits = 0;
-#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR
-  for (std::size_t l = 0; l < hn::Lanes(kUint); ++l) {
-    const PixelKey now = __atomic_load_n(keys + pixel[l], __ATOMIC_RELAXED);
-    bits |= std::uint64_t{now >= pixel_key(depth[l], 0)} << l;
-  }
-#else
-  // Keys may change under the gather. A stale half is larger than the present one, and only lets more through.
-  const Ints index = hn::BitCast(kInt, hn::Add(hn::ShiftLeft<1>(hn::LoadU(kUint, pixel)), hn::Set(kUint, 1)));
-  const Uints current = hn::GatherIndex(kUint, reinterpret_cast<const std::uint32_t*>(keys), index);
-  const auto behind = hn::Lt(current, hn::BitCast(kUint, hn::LoadU(kFloat, depth)));
-  hn::StoreMaskBits(kUint, hn::Not(behind), reinterpret_cast<std::uint8_t*>(&bits));
-#endif
-  return bits;
-}
-
-/// Depth test and atomic minimum of everything in the buffer, which is empty afterwards.
-void Flush(FragmentBuffer& f, PixelKey* keys) {
-  const std::size_t lanes = hn::Lanes(kUint), count = f.count, ahead = FragmentBuffer::kPadding - lanes;
-  std::fill(&f.pixel[count], &f.pixel[count] + FragmentBuffer::kPadding, 0u);
-  for (std::size_t i = 0; i < count && i < ahead; ++i) hwy::Prefetch(keys + f.pixel[i]);
-  for (std::size_t i = 0; i < count; i += lanes) {
-    for (std::size_t l = 0; l < lanes; ++l) hwy::Prefetch(keys + f.pixel[i + ahead + l]);
-    const std::uint64_t used = count - i < lanes ? (std::uint64_t{1} << (count - i)) - 1 : ~std::uint64_t{0};
-    for (std::uint64_t bits = passing(&f.pixel[i], &f.depth[i], keys) & used; bits != 0; bits &= bits - 1) {
-      const std::size_t l = i + static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      atomic_min(keys[f.pixel[l]], pixel_key(f.depth[l], f.id[l]));
-    }
-  }
-  f.count = 0;
-}
-
-HWY_INLINE void append(FragmentBuffer& f, Mask m, Uints pixel, Float depth, Uints id) {
-  const Compressor compress(m);
-  hn::StoreU(compress(pixel), kUint, &f.pixel[f.count]);
-  hn::StoreU(compress(depth.v), kFloat, &f.depth[f.count]);
-  hn::StoreU(compress(id), kUint, &f.id[f.count]);
-  f.count += compress.count();
-}
 
 HWY_INLINE void append_visible(const SegmentLanes& w, Mask covered, Uints column_pixel, Float row, Float s, FragmentBuffer& f,
                                PixelKey* keys) {
-  if (f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity) Flush(f, keys);
-  append(f, covered, pixel_in_column(w, column_pixel, row), wide::raster_band_depth(w.band, s), w.id);
+  const SegmentKeys make;
+  append_fragments(make, covered, pixel_in_column(w, column_pixel, row), make.rank(wide::raster_band_depth(w.band, s)),
+                   make.id(w, s), f, keys);
 }
 
 /// One column of each lane: appends the covered rows. A thin band covers one at most, in some lanes and not in others: it is
@@ -106,7 +58,7 @@ HWY_INLINE void visit_column(const SegmentLanes& w, Float column, Uints column_p
 void Center(const ScreenBlock& block, int width, int height, FragmentBuffer& f, PixelKey* keys) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
   SegmentLanes w;
-  for (std::size_t j = 0; j + 1 < block.count; j += lanes) {
+  for (std::size_t j = 0; j + block.stride < block.count; j += lanes) {
     if (!load_segments(block, j, width, height, 0.5f, 0.5f, w)) continue;
     const Float at_end = wide::raster_band_half(w.band, w.band.end_u - w.band.u);
     const bool thin = !wide::any(max(w.band.half, at_end) >= Float(0.49f));
@@ -119,7 +71,7 @@ void Center(const ScreenBlock& block, int width, int height, FragmentBuffer& f, 
       column_pixel = hn::Add(column_pixel, w.column_step);
     } while (wide::any(column <= w.last));
   }
-  Flush(f, keys);
+  flush_fragments(SegmentKeys(), f, keys);
 }
 
 }  // namespace

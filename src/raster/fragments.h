@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "frame/deferred.h"
 #include "frame/frame.h"
 
 namespace pelage {
@@ -16,8 +17,8 @@ struct FragmentBuffer {
   static constexpr std::size_t kPadding = 64;
   std::size_t count = 0;
   Buffer<std::uint32_t> pixel{kCapacity + kPadding};  ///< y·width + x
-  Buffer<float> depth{kCapacity + kPadding};          ///< metres
-  Buffer<std::uint32_t> id{kCapacity + kPadding};     ///< segment
+  Buffer<std::uint32_t> rank{kCapacity + kPadding};   ///< by depth: the high half of the key, but for what `id` adds to it
+  Buffer<std::uint32_t> id{kCapacity + kPadding};     ///< segment, or what else the low half is made from
   Buffer<std::uint32_t> mask{kCapacity + kPadding};   ///< bit s: sample s is covered; unused by the center layer
 };
 
@@ -29,5 +30,13 @@ void raster_center(const ScreenBlock& block, int width, int height, FragmentBuff
 /// all threads enter through the same `locks` of a width × height image.
 void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, TileLocks& locks,
                     PixelKey* keys);
+
+/// Walks the strands of a block of assemble_group(): what covers pixel centers goes to `center`, what touches pixels at all to
+/// `conservative`, in one walk; either may be null. Keys are those of DeferredBuffer, whose depth is in `range`.
+void raster_deferred(const ScreenBlock& block, const DepthRange& range, int width, int height, FragmentBuffer& at_centers,
+                     FragmentBuffer& touching, PixelKey* center, PixelKey* conservative);
+/// Their sample layers, as of raster_samples().
+void raster_deferred_samples(const ScreenBlock& block, const DepthRange& range, int width, int height, int samples,
+                             FragmentBuffer& fragments, TileLocks& locks, PixelKey* keys);
 
 }  // namespace pelage

@@ -21,6 +21,7 @@
 
 #include "kernel/wide-inl.h"
 #include "raster/compress-inl.h"
+#include "raster/fragments-inl.h"
 #include "raster/segment_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -46,23 +47,24 @@ HWY_INLINE void enter(PixelKey key, std::uint32_t mask, PixelKey* pixel) {
 }
 
 /// Depth test and minimum of fragments begin … end − 1, whose pixels this thread owns.
-template <int kSamples>
-void enter_all(const FragmentBuffer& f, std::size_t begin, std::size_t end, PixelKey* keys) {
+template <int kSamples, class Keys>
+void enter_all(const Keys& make, const FragmentBuffer& f, std::size_t begin, std::size_t end, PixelKey* keys) {
   constexpr std::size_t kAhead = 24;  // from the second-level cache
-  const std::uint32_t *pixel = f.pixel.data(), *id = f.id.data(), *mask = f.mask.data();
-  const float* depth = f.depth.data();
+  const std::uint32_t *pixel = f.pixel.data(), *id = f.id.data(), *mask = f.mask.data(), *rank = f.rank.data();
   for (std::size_t i = begin; i < end; ++i) {
     hwy::Prefetch(keys + std::size_t{pixel[i + kAhead]} * kSamples);
-    enter<kSamples>(pixel_key(depth[i], id[i]), mask[i], keys + std::size_t{pixel[i]} * kSamples);
+    enter<kSamples>(make.key(rank[i], id[i]), mask[i], keys + std::size_t{pixel[i]} * kSamples);
   }
 }
 
 /// Where fragments wait for their tiles: a group for each bunch of segments.
-template <int kSamples>
+template <int kSamples, class Keys>
 class SampleEntry {
  public:
-  SampleEntry(int width, FragmentBuffer& fragments, TileLocks& locks, PixelKey* keys)
-      : width_(width), f_(fragments), locks_(locks), keys_(keys) {}
+  SampleEntry(const Keys& make, int width, FragmentBuffer& fragments, TileLocks& locks, PixelKey* keys)
+      : make_(make), width_(width), f_(fragments), locks_(locks), keys_(keys) {}
+
+  const Keys& make() const { return make_; }
 
   /// Fragments since the last group lie in `rect`.
   void close_group(const PixelBounds& rect) {
@@ -94,14 +96,16 @@ class SampleEntry {
   static constexpr std::size_t kMostGroups = 64, kMostTiles = 32;
 
   HWY_NOINLINE void enter_group(const PixelBounds& rect, std::size_t begin, std::size_t end) {
-    if (TileLocks::count(rect) <= kMostTiles) return locks_.own(rect, [&] { enter_all<kSamples>(f_, begin, end, keys_); });
+    if (TileLocks::count(rect) <= kMostTiles)
+      return locks_.own(rect, [&] { enter_all<kSamples>(make_, f_, begin, end, keys_); });
     // Long or wide segments: others shall not wait for half the image.
     for (std::size_t i = begin; i < end; ++i) {
       const int pixel = static_cast<int>(f_.pixel[i]), x = pixel % width_, y = pixel / width_;
-      locks_.own({x, x, y, y}, [&] { enter_all<kSamples>(f_, i, i + 1, keys_); });
+      locks_.own({x, x, y, y}, [&] { enter_all<kSamples>(make_, f_, i, i + 1, keys_); });
     }
   }
 
+  const Keys make_;
   int width_;
   FragmentBuffer& f_;
   TileLocks& locks_;
@@ -210,8 +214,8 @@ HWY_INLINE PixelBounds reached_pixels(const SegmentLanes& w, const SampleLanes<k
           most(select(x, highest, w.last))};
 }
 
-template <int kSamples>
-HWY_NOINLINE void make_room(const PixelBounds& reached, SampleEntry<kSamples>& entry) {
+template <class Entry>
+HWY_NOINLINE void make_room(const PixelBounds& reached, Entry& entry) {
   entry.close_group(reached);
   entry.flush();
 }
@@ -248,9 +252,9 @@ HWY_INLINE const T& in_memory(const T& t) {
 }
 
 /// One column of each lane: appends the pixels with covered samples.
-template <int kSamples, Cuts kCuts>
+template <int kSamples, Cuts kCuts, class Entry>
 HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>& lanes, Float column, Mask on_band,
-                             FragmentBuffer& f, const PixelBounds& reached, SampleEntry<kSamples>& entry) {
+                             FragmentBuffer& f, const PixelBounds& reached, Entry& entry) {
   const wide::RasterBand& band = w.band;
   const Float u = column + Float(0.5f), s = u - band.u;
   const Float center = wide::raster_band_center(band, s), half = wide::raster_band_half(band, s);
@@ -259,7 +263,7 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>&
   Float row = max(ceil(center - (half + lanes.below)), Float(0.0f));
   Mask open = on_band && row <= highest;
   if (!wide::any(open)) return;
-  const Uints pixel_depth = hn::BitCast(kUint, wide::raster_band_depth(band, s).v);
+  const Uints rank = entry.make().rank(wide::raster_band_depth(band, s)), id = entry.make().id(w, s);
   const Uints inside = kCuts == Cuts::kAll ? between_ends(band, lanes, u) : hn::Zero(kUint);
   Uints pixel = pixel_in_column(w, first_in_column(w, column), row);
   Float reach[kSamples];  // the right side of raster_sample_covered()
@@ -276,8 +280,8 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>&
     if (entry.full()) make_room(reached, entry);
     const Compressor compress(nonzero(mask));
     hn::StoreU(compress(pixel), kUint, &f.pixel[f.count]);
-    hn::StoreU(compress(pixel_depth), kUint, reinterpret_cast<std::uint32_t*>(&f.depth[f.count]));
-    hn::StoreU(compress(w.id), kUint, &f.id[f.count]);
+    hn::StoreU(compress(rank), kUint, &f.rank[f.count]);
+    hn::StoreU(compress(id), kUint, &f.id[f.count]);
     hn::StoreU(compress(mask), kUint, &f.mask[f.count]);
     f.count += compress.count();
     entry.prefetch();
@@ -290,9 +294,9 @@ HWY_INLINE void visit_column(const SegmentLanes& w, const SampleLanes<kSamples>&
 HWY_INLINE Float max_of_lanes(Float a) { return hn::MaxOfLanes(kFloat, a.v); }
 
 /// All columns of a bunch.
-template <int kSamples>
+template <int kSamples, class Entry>
 HWY_INLINE void visit_segments(const SegmentLanes& w, const SampleLanes<kSamples>& o, FragmentBuffer& f,
-                               const PixelBounds& reached, SampleEntry<kSamples>& entry) {
+                               const PixelBounds& reached, Entry& entry) {
   const wide::Vec2 uncut = wide::raster_uncut_columns(w.band);
   const Mask ends = cut_by_ends(w.band, o);
   // Caps cut the columns at either end of a segment. So that few steps have to look at them, most at one of the two, lanes
@@ -313,12 +317,13 @@ HWY_INLINE void visit_segments(const SegmentLanes& w, const SampleLanes<kSamples
   }
 }
 
-template <int kSamples>
-void samples_of_block(const ScreenBlock& block, int width, int height, FragmentBuffer& f, TileLocks& locks, PixelKey* keys) {
-  SampleEntry<kSamples> entry(width, f, locks, keys);
+template <int kSamples, class Keys>
+void samples_of_block(const Keys& make, const ScreenBlock& block, int width, int height, FragmentBuffer& f, TileLocks& locks,
+                      PixelKey* keys) {
+  SampleEntry<kSamples, Keys> entry(make, width, f, locks, keys);
   SegmentLanes w;
   SampleLanes<kSamples> o;
-  for (std::size_t j = 0; j + 1 < block.count; j += hn::Lanes(kUint)) {
+  for (std::size_t j = 0; j + block.stride < block.count; j += hn::Lanes(kUint)) {
     if (!load_segments(block, j, width, height, 0.0f, 1.0f, w)) continue;
     place_samples(w.band, o);
     const PixelBounds reached = reached_pixels(w, o);
@@ -329,15 +334,26 @@ void samples_of_block(const ScreenBlock& block, int width, int height, FragmentB
   entry.flush();
 }
 
+template <class Keys>
+void samples_by_count(const Keys& make, const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& f,
+                      TileLocks& locks, PixelKey* keys) {
+  switch (samples) {
+    case 1: return samples_of_block<1>(make, block, width, height, f, locks, keys);
+    case 2: return samples_of_block<2>(make, block, width, height, f, locks, keys);
+    case 4: return samples_of_block<4>(make, block, width, height, f, locks, keys);
+    case 8: return samples_of_block<8>(make, block, width, height, f, locks, keys);
+    case 16: return samples_of_block<16>(make, block, width, height, f, locks, keys);
+  }
+}
+
 void Samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& f, TileLocks& locks,
              PixelKey* keys) {
-  switch (samples) {
-    case 1: return samples_of_block<1>(block, width, height, f, locks, keys);
-    case 2: return samples_of_block<2>(block, width, height, f, locks, keys);
-    case 4: return samples_of_block<4>(block, width, height, f, locks, keys);
-    case 8: return samples_of_block<8>(block, width, height, f, locks, keys);
-    case 16: return samples_of_block<16>(block, width, height, f, locks, keys);
-  }
+  samples_by_count(SegmentKeys(), block, width, height, samples, f, locks, keys);
+}
+
+void DeferredSamples(const ScreenBlock& block, const DepthRange& range, int width, int height, int samples, FragmentBuffer& f,
+                     TileLocks& locks, PixelKey* keys) {
+  samples_by_count(deferred_keys(block, range), block, width, height, samples, f, locks, keys);
 }
 
 }  // namespace
@@ -349,10 +365,16 @@ HWY_AFTER_NAMESPACE();
 namespace pelage {
 
 HWY_EXPORT(Samples);
+HWY_EXPORT(DeferredSamples);
 
 void raster_samples(const ScreenBlock& block, int width, int height, int samples, FragmentBuffer& fragments, TileLocks& locks,
                     PixelKey* keys) {
   HWY_DYNAMIC_DISPATCH(Samples)(block, width, height, samples, fragments, locks, keys);
+}
+
+void raster_deferred_samples(const ScreenBlock& block, const DepthRange& range, int width, int height, int samples,
+                             FragmentBuffer& fragments, TileLocks& locks, PixelKey* keys) {
+  HWY_DYNAMIC_DISPATCH(DeferredSamples)(block, range, width, height, samples, fragments, locks, keys);
 }
 
 }  // namespace pelage

@@ -38,10 +38,11 @@ HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width
   const auto pair = [&](const Buffer<float>& a, const Buffer<float>& b, std::size_t i) {
     return wide::Vec2(wide::load(&a[i]), wide::load(&b[i]));
   };
+  const std::size_t k = j + block.stride;
   w.id = hn::LoadU(kUint, &block.id[j]);
-  w.band = wide::raster_band(pair(block.x, block.y, j), pair(block.x, block.y, j + 1), wide::load(&block.radius[j]),
-                             wide::load(&block.radius[j + 1]), wide::load(&block.depth[j]), wide::load(&block.depth[j + 1]),
-                             pair(block.cap_x, block.cap_y, j), pair(block.cap_x, block.cap_y, j + 1));
+  w.band = wide::raster_band(pair(block.x, block.y, j), pair(block.x, block.y, k), wide::load(&block.radius[j]),
+                             wide::load(&block.radius[k]), wide::load(&block.depth[j]), wide::load(&block.depth[k]),
+                             pair(block.cap_x, block.cap_y, j), pair(block.cap_x, block.cap_y, k));
   const wide::Float w_pixels(static_cast<float>(width)), h_pixels(static_cast<float>(height));
   const wide::Float columns = select(w.band.x_major, w_pixels, h_pixels);
   w.rows = select(w.band.x_major, h_pixels, w_pixels);
@@ -53,7 +54,7 @@ HWY_INLINE bool load_segments(const ScreenBlock& block, std::size_t j, int width
   w.row_step = hn::IfThenElse(x_major, line, one);
   w.origin = hn::Set(kUint, 0u - 0x4b000000u * (static_cast<std::uint32_t>(width) + 1));
   const wide::Mask none{hn::RebindMask(wide::kFloatTag, hn::Eq(w.id, hn::Set(kUint, ScreenBlock::kNoSegment)))};
-  const wide::Mask used{hn::FirstN(wide::kFloatTag, block.count - 1 - j)};
+  const wide::Mask used{hn::FirstN(wide::kFloatTag, block.count - block.stride - j)};
   const wide::Mask drawn = used && !none && w.column <= w.last;
   w.last = select(drawn, w.last, wide::Float(-1.0f));
   return wide::any(drawn);

@@ -69,7 +69,7 @@ class Fingerprint {
     add_array(s.points), add_array(s.widths), add_array(s.offsets), add_array(s.colors);
   }
   void add_one(const GroomInstance& groom) {
-    const auto& [name, strands, material, transform, width_scale] = groom;
+    const auto& [name, strands, hair_mesh, lod_lambda, material, transform, width_scale] = groom;  // what is traced are strands
     add(material, transform, width_scale, strands != nullptr);
     if (strands) add(*strands);
   }

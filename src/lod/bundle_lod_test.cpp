@@ -1,0 +1,81 @@
+#include "lod/bundle_lod.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "frame/camera_view.h"
+#include "kernel/scalar.h"
+#include "kit/hair_mesh_scene.h"
+
+namespace pelage {
+namespace {
+
+using testing::deferred_grooms;
+using testing::every_operator;
+using testing::hair_mesh_scene;
+using testing::small_hair_mesh;
+
+LodSelection select(const Scene& scene, int width = 320, int height = 240) {
+  return select_lod(scene, deferred_grooms(scene), make_camera_view(scene.camera, width, height));
+}
+
+// Lipp 2026, eq. 1, 2, 4 and 5, by hand.
+TEST(BundleLod, FollowsItsEquations) {
+  EXPECT_FLOAT_EQ(kernel::lod_selection({10, 20}, {13, 24}, 100, 3), 0.15f);
+  EXPECT_FLOAT_EQ(kernel::lod_selection({0, 0}, {300, 400}, 100, 3), 1);
+  EXPECT_EQ(kernel::lod_strands(0.1f, 1000, 0.5f), 101);
+  EXPECT_EQ(kernel::lod_strands(0, 1000, 0.5f), 1);
+  EXPECT_EQ(kernel::lod_strands(1, 1000, 0.99f), 1000);
+  EXPECT_EQ(kernel::lod_points(1, 127, 8), 127);
+  EXPECT_EQ(kernel::lod_points(0.25f, 127, 8), 65);  // ⌊63.5⌋ − 1 = 62 → 64 + 1
+  EXPECT_EQ(kernel::lod_points(0.01f, 127, 8), 17);  // ⌊12.7⌋ − 1 = 11 → 16 + 1
+  EXPECT_EQ(kernel::lod_points(0, 127, 9), 9);       // 9 − 1 is a power already
+  EXPECT_EQ(kernel::lod_points(0, 127, 2), 3);
+  EXPECT_FLOAT_EQ(kernel::lod_depth_shift(1), 0);
+  EXPECT_NEAR(kernel::lod_depth_shift(0.25f), std::log(4.f), 1e-6f);
+}
+
+TEST(BundleLod, WholeWithoutIt) {
+  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator()));
+  scene.camera.eye = {0, 0, 30};
+  scene.settings.swr.lod = false;
+  const LodSelection s = select(scene);
+  EXPECT_EQ(s.strands, 160u);
+  EXPECT_EQ(s.points, 160u * 127);
+}
+
+// Farther away there are fewer strands and points, of the same width in sum.
+TEST(BundleLod, FallsWithDistance) {
+  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator(), 2, 5, 4000));
+  std::uint64_t before = ~std::uint64_t{0};
+  for (const float distance : {0.5f, 2.f, 8.f, 32.f}) {
+    scene.camera.eye = {0, 0.1f, distance};
+    const LodSelection s = select(scene);
+    EXPECT_LE(s.strands, before);
+    before = s.strands;
+    for (const BundleDraw& b : s.bundles) {
+      EXPECT_NEAR(b.width_scale * static_cast<float>(b.strands), 4000, 1);
+      EXPECT_TRUE(b.points == 127 || ((b.points - 1) & (b.points - 2)) == 0) << b.points;
+    }
+  }
+  EXPECT_LT(before, 16000u / 20);
+}
+
+TEST(BundleLod, ABundleOutOfViewIsLeftOut) {
+  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator()));
+  EXPECT_EQ(select(scene).bundles.size(), 4u);
+  scene.camera.target = scene.camera.eye + Vec3(0, 0, 1);  // looks away
+  EXPECT_EQ(select(scene).bundles.size(), 0u);
+  scene.camera.target = scene.camera.eye + Vec3(1, 0, -1);
+  EXPECT_EQ(select(scene).bundles.size(), 0u);
+}
+
+TEST(BundleLod, NearestFirst) {
+  const LodSelection s = select(hair_mesh_scene(small_hair_mesh(every_operator(), 4)));
+  ASSERT_EQ(s.bundles.size(), 16u);
+  for (std::size_t i = 1; i < s.bundles.size(); ++i) EXPECT_LE(s.bundles[i - 1].nearest, s.bundles[i].nearest);
+}
+
+}  // namespace
+}  // namespace pelage

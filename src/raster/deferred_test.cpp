@@ -1,0 +1,323 @@
+#include "raster/deferred.h"
+
+#include <gtest/gtest.h>
+#include <pelage/runtime.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "assemble/strand_block.h"
+#include "core/rng.h"
+#include "frame/camera_view.h"
+#include "kernel/scalar.h"
+#include "kit/hair_mesh_scene.h"
+#include "lod/bundle_lod.h"
+
+namespace pelage {
+namespace {
+
+using testing::deferred_grooms;
+using testing::every_operator;
+using testing::hair_mesh_scene;
+using testing::small_hair_mesh;
+
+struct Drawn {
+  DeferredBuffer buffer;
+  LodSelection selection;
+  CameraView view;
+};
+
+Drawn draw(const Scene& scene, int width, int height, const DeferredLayers& layers, const Buffer<float>& opaque = {}) {
+  Drawn d;
+  d.view = make_camera_view(scene.camera, width, height);
+  const std::vector<DeferredGroom> grooms = deferred_grooms(scene);
+  d.selection = select_lod(scene, grooms, d.view);
+  place_deferred(scene, grooms, d.selection, d.view, d.buffer);
+  raster_hair_meshes(scene, grooms, d.selection, d.view, layers, opaque, d.buffer);
+  return d;
+}
+
+constexpr DeferredLayers kBoth{.center = true, .conservative = true};
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The pixels that a segment touches, against polygons clipped in doubles.
+
+struct D2 {
+  double x, y;
+};
+
+/// Keeps a·x + b·y + c ≥ 0.
+std::vector<D2> clipped(const std::vector<D2>& polygon, double a, double b, double c) {
+  std::vector<D2> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const D2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+    const double side_p = a * p.x + b * p.y + c, side_q = a * q.x + b * q.y + c;
+    if (side_p >= 0) kept.push_back(p);
+    if ((side_p >= 0) != (side_q >= 0)) {
+      const double t = side_p / (side_p - side_q);
+      kept.push_back({p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t});
+    }
+  }
+  return kept;
+}
+
+/// A segment along its major axis: from (u0, v0) to (u1, v1), u0 ≤ u1, half heights h0 and h1.
+struct OracleBand {
+  double u0, v0, h0, u1, v1, h1;
+  /// Whether it meets the square around a pixel that is `grow` larger on every side.
+  bool meets(int column, int row, double grow) const {
+    const std::vector<D2> band{{u0, v0 - h0}, {u1, v1 - h1}, {u1, v1 + h1}, {u0, v0 + h0}};
+    std::vector<D2> p = clipped(band, 1, 0, grow - column);
+    if (!p.empty()) p = clipped(p, -1, 0, column + 1 + grow);
+    if (!p.empty()) p = clipped(p, 0, 1, grow - row);
+    if (!p.empty()) p = clipped(p, 0, -1, row + 1 + grow);
+    return !p.empty();
+  }
+};
+
+TEST(DeferredRaster, AMillionSegmentsTouchThePixelsThatAClipperSays) {
+  constexpr double kRounding = 2e-4;  // pixels; coordinates are below 64, whose floats are 4e-6 apart
+  int pixels = 0, doubtful = 0;
+  for (std::uint32_t i = 0; i < 1000000; ++i) {
+    Rng rng(99, i);
+    const float size = std::pow(10.f, -2 + 3 * rng.uniform());  // 0.01 to 10 pixels long
+    const Vec2 a(16 + 32 * rng.uniform(), 16 + 32 * rng.uniform());
+    const Vec2 b(a.x + size * (2 * rng.uniform() - 1), a.y + size * (2 * rng.uniform() - 1));
+    const float radius = std::pow(10.f, -2.5f + 2.5f * rng.uniform());
+    const kernel::RasterBand band = kernel::raster_band(a, b, radius, 0.8f * radius, 1, 1, {1, 0}, {1, 0});
+    const double stretch = std::sqrt(1 + static_cast<double>(band.slope) * band.slope);
+    const bool forward = band.end_u >= band.u;
+    const auto end = [&](bool start) {
+      return start ? std::array<double, 3>{band.u, band.v, radius * stretch}
+                   : std::array<double, 3>{band.end_u, band.end_v, 0.8f * radius * stretch};
+    };
+    const auto lo = end(forward), hi = end(!forward);
+    const OracleBand oracle{lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]};
+    const Vec2 columns = kernel::raster_touched_columns(band);
+    for (int column = static_cast<int>(columns.x) - 1; column <= static_cast<int>(columns.y) + 1; ++column) {
+      const auto c = static_cast<float>(column);
+      const bool inside = c >= columns.x && c <= columns.y;
+      const Vec2 rows = inside ? kernel::raster_touched_rows(band, c) : Vec2(1, 0);
+      const double low = std::min(lo[1] - lo[2], hi[1] - hi[2]), high = std::max(lo[1] + lo[2], hi[1] + hi[2]);
+      for (int row = static_cast<int>(low) - 1; row <= static_cast<int>(high) + 1; ++row) {
+        const bool taken = static_cast<float>(row) >= rows.x && static_cast<float>(row) <= rows.y;
+        const bool sure = oracle.meets(column, row, -kRounding), possible = oracle.meets(column, row, kRounding);
+        ASSERT_TRUE(taken || !sure) << "segment " << i << " misses pixel " << column << ", " << row;
+        ASSERT_TRUE(!taken || possible) << "segment " << i << " takes pixel " << column << ", " << row;
+        pixels += taken, doubtful += possible && !sure;
+      }
+    }
+  }
+  EXPECT_GT(pixels, 3000000);
+  EXPECT_LT(doubtful, pixels / 200);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The layers, against a plain walk over every pixel of a small picture.
+
+struct PlainLayers {
+  std::vector<PixelKey> center, conservative;
+};
+
+void draw_plainly(const ScreenBlock& block, const DeferredBuffer& like, PlainLayers& out) {
+  const int width = like.view.width, height = like.view.height;
+  for (std::size_t j = 0; j + block.stride < block.count; ++j) {
+    if (block.id[j] == ScreenBlock::kNoSegment) continue;
+    const std::size_t k = j + block.stride;
+    const kernel::RasterBand band =
+        kernel::raster_band({block.x[j], block.y[j]}, {block.x[k], block.y[k]}, block.radius[j], block.radius[k],
+                            block.depth[j], block.depth[k], {block.cap_x[j], block.cap_y[j]}, {block.cap_x[k], block.cap_y[k]});
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const float column = static_cast<float>(band.x_major ? x : y), row = static_cast<float>(band.x_major ? y : x);
+        const float u = column + 0.5f, s = u - band.u;
+        const float middle = kernel::raster_band_center(band, s), half = kernel::raster_band_half(band, s);
+        const bool covered = row >= kernel::raster_first_row(middle, half, 0.5f) &&
+                             kernel::raster_row_covered(row, 0.5f, middle, half) &&
+                             kernel::raster_between_caps(band, u, row + 0.5f) && kernel::raster_between_ends(band, u);
+        const Vec2 columns = kernel::raster_touched_columns(band), rows = kernel::raster_touched_rows(band, column);
+        const bool touched = column >= columns.x && column <= columns.y && row >= rows.x && row <= rows.y;
+        if (!covered && !touched) continue;
+        const float du = band.end_u - band.u;
+        const std::size_t end = (du < 0 ? -s : s) > std::fabs(du) * 0.5f ? k : j;
+        const auto level = static_cast<PixelKey>(
+            kernel::raster_depth_level(kernel::raster_band_depth(band, s), like.range.near_end, like.range.levels_per_metre()));
+        const PixelKey key = level << 40 | static_cast<PixelKey>(block.payload_high[end]) << 32 | block.payload_low[end];
+        const auto at = static_cast<std::size_t>(y * width + x);
+        if (covered) out.center[at] = std::min(out.center[at], key);
+        out.conservative[at] = std::min(out.conservative[at], key);
+      }
+  }
+}
+
+PlainLayers plain_layers(const Scene& scene, const Drawn& d) {
+  const std::vector<DeferredGroom> grooms = deferred_grooms(scene);
+  PlainLayers plain;
+  plain.center.assign(d.buffer.center.size(), kEmptyPixel), plain.conservative = plain.center;
+  StrandGroup group;
+  ScreenBlock block;
+  for (const BundleDraw& b : d.selection.bundles)
+    for (std::uint32_t s = 0; s < b.strands; s += 16) {
+      make_strands_scalar(grooms[b.groom].mesh->cages[b.bundle], s, std::min(16u, b.strands - s), b.points, group);
+      assemble_group(group, make_strand_block_job(scene, d.buffer.view, grooms[b.groom], b.groom, grooms.size()), b.width_scale,
+                     block);
+      draw_plainly(block, d.buffer, plain);
+    }
+  return plain;
+}
+
+bool same(const Buffer<PixelKey>& a, const std::vector<PixelKey>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
+}
+
+TEST(DeferredRaster, DrawsWhatAPlainWalkDraws) {
+  for (const float width : {5e-5f, 1e-3f, 8e-3f}) {  // up to some eight pixels
+    HairMesh mesh = small_hair_mesh(every_operator(), 2, 5, 9);
+    mesh.width = width;
+    Scene scene = hair_mesh_scene(mesh);
+    scene.settings.swr.points = 17;
+    const Drawn d = draw(scene, 89, 57, kBoth);
+    const PlainLayers plain = plain_layers(scene, d);
+    EXPECT_GT(std::count_if(plain.center.begin(), plain.center.end(), deferred::is_strand), width > 1e-4f ? 150 : 5);
+    EXPECT_TRUE(same(d.buffer.center, plain.center)) << width;
+    EXPECT_TRUE(same(d.buffer.conservative, plain.conservative)) << width;
+    for (std::size_t i = 0; i < plain.center.size(); ++i)
+      EXPECT_TRUE(!deferred::is_strand(d.buffer.center[i]) || d.buffer.conservative[i] <= d.buffer.center[i]);
+    // Without the conservative layer the walk skips columns; the center layer is the same.
+    EXPECT_TRUE(same(draw(scene, 89, 57, {}).buffer.center, plain.center)) << width;
+  }
+}
+
+TEST(DeferredRaster, DrawsWhatAPlainWalkDrawsFromWithinTheHair) {
+  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator(), 2, 5, 9));
+  scene.settings.swr.points = 17;
+  scene.camera.eye = {0.02f, 0.08f, 0.02f}, scene.camera.target = {0.1f, 0.1f, 0}, scene.camera.near_plane = 0.01f;
+  const Drawn d = draw(scene, 61, 47, kBoth);
+  const PlainLayers plain = plain_layers(scene, d);
+  EXPECT_GT(std::count_if(plain.center.begin(), plain.center.end(), deferred::is_strand), 5);
+  EXPECT_TRUE(same(d.buffer.center, plain.center));
+  EXPECT_TRUE(same(d.buffer.conservative, plain.conservative));
+}
+
+TEST(DeferredRaster, SameBitsForAnyThreadsAndInstructionSet) {
+  const Scene scene = hair_mesh_scene(small_hair_mesh(every_operator()));
+  const DeferredLayers layers{.center = true, .conservative = true, .samples = 8};
+  const Drawn expected = draw(scene, 257, 89, layers);
+  const auto same_as = [&](const Drawn& d) {
+    const auto equal = [](const Buffer<PixelKey>& a, const Buffer<PixelKey>& b) {
+      return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(PixelKey)) == 0;
+    };
+    return equal(d.buffer.center, expected.buffer.center) && equal(d.buffer.conservative, expected.buffer.conservative) &&
+           equal(d.buffer.sample_keys, expected.buffer.sample_keys);
+  };
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    EXPECT_TRUE(same_as(draw(scene, 257, 89, layers))) << threads;
+  }
+  set_thread_count(0);
+  for (const std::string& isa : available_isas()) {
+    set_isa(isa);
+    EXPECT_TRUE(same_as(draw(scene, 257, 89, layers))) << isa;
+  }
+  set_isa("");
+}
+
+// What a pixel tells is what the strand there is.
+TEST(DeferredRaster, PixelsHoldTheStrandThatTheyShow) {
+  HairMesh mesh = small_hair_mesh({}, 1, 4, 1);
+  mesh.width = 0.004f;
+  const Scene scene = hair_mesh_scene(mesh);
+  const Drawn d = draw(scene, 200, 150, {});
+  const StrandSet strand = expand(mesh, {.points = 127});
+  int checked = 0;
+  for (int y = 0; y < d.buffer.view.height; ++y)
+    for (int x = 0; x < d.buffer.view.width; ++x) {
+      const PixelKey key = d.buffer.center[static_cast<std::size_t>(y * d.buffer.view.width + x)];
+      if (!deferred::is_strand(key)) continue;
+      const float z = d.buffer.range.metres(deferred::depth_level(key)), scale = z / d.buffer.view.focal;
+      const Vec3 place =
+          transform_point(d.buffer.view.camera_to_world, {(static_cast<float>(x) + 0.5f - d.buffer.view.center_x) * scale,
+                                                          (static_cast<float>(y) + 0.5f - d.buffer.view.center_y) * scale, z});
+      std::size_t nearest = 1;
+      for (std::size_t i = 1; i + 1 < strand.points.size(); ++i)
+        if (length(strand.points[i] - place) < length(strand.points[nearest] - place)) nearest = i;
+      EXPECT_LT(length(strand.points[nearest] - place), 0.0035f);
+      const Vec3 along = normalize(strand.points[nearest + 1] - strand.points[nearest - 1]);
+      EXPECT_GT(dot(along, deferred::tangent(key)), std::cos(0.05f));
+      EXPECT_NEAR(static_cast<float>(deferred::w_cell(key)) + 0.5f, 64 * static_cast<float>(nearest) / 126, 1.5f);
+      EXPECT_EQ(deferred::u_cell(key), static_cast<std::uint32_t>(64 * strand.root_uv[0].x));
+      EXPECT_EQ(deferred::v_cell(key), static_cast<std::uint32_t>(64 * strand.root_uv[0].y));
+      ++checked;
+    }
+  EXPECT_GT(checked, 100);
+}
+
+TEST(DeferredRaster, OpaqueDepthHidesWhatLiesBehind) {
+  const Scene scene = hair_mesh_scene(small_hair_mesh(every_operator()));
+  Buffer<float> opaque(120 * 90 * 4);
+  for (std::size_t i = 0; i < opaque.size(); ++i) opaque[i] = i / 4 % 120 < 60 ? 0.3f : i % 4 < 2 ? 0.3f : INFINITY;
+  const DeferredLayers layers{.center = true, .conservative = true, .samples = 4};
+  const Drawn open = draw(scene, 120, 90, layers), hidden = draw(scene, 120, 90, layers, opaque);
+  const int width = open.buffer.view.width;
+  int before = 0;
+  for (std::size_t p = 0; p < open.buffer.center.size(); ++p) {
+    const bool left = static_cast<int>(p) % width + open.buffer.left < 60;
+    EXPECT_EQ(hidden.buffer.center[p], left ? kEmptyPixel : open.buffer.center[p]);
+    EXPECT_EQ(hidden.buffer.conservative[p], left ? kEmptyPixel : open.buffer.conservative[p]);
+    for (std::size_t s = 0; s < 4; ++s)
+      EXPECT_EQ(hidden.buffer.sample_keys[p * 4 + s], left || s < 2 ? kEmptyPixel : open.buffer.sample_keys[p * 4 + s]);
+    before += !left && deferred::is_strand(open.buffer.conservative[p]);
+  }
+  EXPECT_GT(before, 500);
+}
+
+TEST(DeferredRaster, GroomsHaveCellsOfTheirOwn) {
+  Scene scene = hair_mesh_scene(small_hair_mesh({}));
+  scene.grooms.push_back(scene.grooms[0]);
+  scene.grooms[1].transform.m[0][3] = 0.15f;
+  const Drawn d = draw(scene, 200, 100, kBoth);
+  const UvCells a = uv_cells(0, 2), b = uv_cells(1, 2);
+  int of_a = 0, of_b = 0;
+  for (const PixelKey key : d.buffer.conservative) {
+    if (!deferred::is_strand(key)) continue;
+    const auto in = [&](const UvCells& c) {
+      return deferred::u_cell(key) - c.first_u < c.count && deferred::v_cell(key) - c.first_v < c.count;
+    };
+    EXPECT_NE(in(a), in(b));
+    of_a += in(a), of_b += in(b);
+  }
+  EXPECT_GT(of_a, 500);
+  EXPECT_GT(of_b, 500);
+}
+
+TEST(DeferredPacking, TangentsTurnByNoMoreThanTheirBound) {
+  float worst = 0;
+  for (std::uint32_t i = 0; i < 200000; ++i) {
+    Rng rng(5, i);
+    const float z = 2 * rng.uniform() - 1, phi = 6.2831853f * rng.uniform(), r = std::sqrt(1 - z * z);
+    const Vec3 d(r * std::cos(phi), r * std::sin(phi), z);
+    const Vec2 oct = kernel::raster_octahedral(d);
+    const Vec3 back = kernel::raster_from_octahedral({kernel::raster_tangent_of_level(kernel::raster_tangent_level(oct.x)),
+                                                      kernel::raster_tangent_of_level(kernel::raster_tangent_level(oct.y))});
+    worst = std::max(worst, length(cross(d, back)));
+    ASSERT_GT(dot(d, back), 0.9f);
+  }
+  EXPECT_LT(worst, kernel::kRasterTangentMaxError);
+  EXPECT_GT(worst, 0.5f * kernel::kRasterTangentMaxError);
+}
+
+TEST(DeferredPacking, AllGroomsFitIntoTheCells) {
+  for (const std::size_t grooms : {std::size_t{1}, std::size_t{2}, std::size_t{5}, std::size_t{100}, std::size_t{4096}})
+    for (std::size_t i = 0; i < grooms; ++i) {
+      const UvCells c = uv_cells(i, grooms);
+      EXPECT_GE(c.count, 1u);
+      EXPECT_LE(c.first_u + c.count, kUvCells);
+      EXPECT_LE(c.first_v + c.count, kUvCells);
+    }
+}
+
+}  // namespace
+}  // namespace pelage
