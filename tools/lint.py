@@ -40,6 +40,7 @@ EXCEPTIONS = {
     ("src/raster/deferred.cpp", "assemble/strand_block.h"),
     ("src/raster/deferred.cpp", "groom/hairmesh/prepared.h"),
     ("src/raster/deferred.cpp", "groom/hairmesh/strand_group.h"),
+    ("src/shade/deferred.cpp", "groom/hairmesh/prepared.h"),
 }
 
 

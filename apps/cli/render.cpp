@@ -165,7 +165,8 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("SHARE");
   verb.add_flag("--no-linking", o.no_linking, "link: missed pixels of strands stay empty");
-  verb.add_flag("--no-filter", o.no_filter, "link: hair is not smoothed along its strands");
+  verb.add_flag("--no-filter", o.no_filter, "link, swr: hair is not smoothed along its strands");
+  verb.add_flag("--no-lod", o.no_lod, "swr: all strands and points of hair meshes, however small they are on the screen");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')
       ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw", "motion"}));

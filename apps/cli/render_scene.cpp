@@ -126,8 +126,9 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
                                 {"smaa", Method::kSmaa},
                                 {"link", Method::kLink},
                                 {"link-taa", Method::kLinkTaa},
-                                {"oidn", Method::kOidn}});
-  if (o.method && is_linking(s.method)) s.samples = 1;
+                                {"oidn", Method::kOidn},
+                                {"swr", Method::kSwr}});
+  if (o.method && (is_linking(s.method) || s.method == Method::kSwr)) s.samples = 1;
   if (o.frames && !makes_sequence(o)) s.frames = *o.frames;
   if (o.samples) s.samples = *o.samples;
   if (s.method == Method::kMsaa && !is_sample_count(s.samples))
@@ -135,7 +136,11 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (is_linking(s.method) && !is_link_sample_count(s.samples))
     throw UsageError("--spp", std::to_string(s.samples), "no square of visibility pixels",
                      "use 1, 4, 9 or 16 with --method link");
-  if (o.alpha && is_linking(s.method))
+  if (s.method == Method::kSwr && !is_deferred_sample_count(s.samples))
+    throw UsageError("--spp", std::to_string(s.samples), "no sample layer of method swr", "use 1, 2, 4 or 8 with --method swr");
+  if (o.alpha && s.method == Method::kSwr)
+    s.swr.alpha = by_name<SwrAlpha>("--alpha", *o.alpha, {{"ratio", SwrAlpha::kRatio}, {"coverage", SwrAlpha::kCoverage}});
+  else if (o.alpha && is_linking(s.method))
     s.link.alpha = by_name<LinkAlpha>(
         "--alpha", *o.alpha, {{"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}, {"none", LinkAlpha::kNone}});
   else if (o.alpha)
@@ -145,7 +150,8 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.kernel_radius) s.link.kernel_radius = *o.kernel_radius;
   if (o.depth_sigma) s.link.depth_sigma = *o.depth_sigma;
   if (o.no_linking) s.link.link = false;
-  if (o.no_filter) s.link.filter = false;
+  if (o.no_filter) s.link.filter = s.swr.filter = false;
+  if (o.no_lod) s.swr.lod = false;
   if (o.view)
     s.view = by_name<View>("--view", *o.view,
                            {{"beauty", View::kBeauty},

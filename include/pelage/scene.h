@@ -87,8 +87,11 @@ struct GroomInstance {
   std::shared_ptr<const HairMesh> hair_mesh;  ///< or null. Method::kSwr draws it as it is, everything else its strands
   float lod_lambda = 3;                       ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
   HairMaterial material;
-  Affine transform;       ///< object to world; similarity (rotation, translation, one scale)
-  float width_scale = 1;  ///< multiplies every width
+  std::shared_ptr<const Image> color_map;    ///< of a hair mesh: linear RGB over the groom's u (x) and v (y), instead of the
+                                             ///< material's color; may be null
+  std::shared_ptr<const Image> color_along;  ///< of a hair mesh: the same over w (x), times `color_map` where both are given
+  Affine transform;                          ///< object to world; similarity (rotation, translation, one scale)
+  float width_scale = 1;                     ///< multiplies every width
 };
 
 struct MeshInstance {

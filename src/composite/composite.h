@@ -5,6 +5,7 @@
 #include <pelage/render.h>  // make_display()
 #include <pelage/scene.h>
 
+#include "frame/deferred.h"
 #include "frame/frame.h"
 
 namespace pelage {
@@ -26,5 +27,10 @@ struct FrameLayers {
 /// exposure applied). AlphaSource::kSamples averages the samples; kAnalytic lays the mean color of the visible strand
 /// samples over the opaque scene by the exact area of GBuffer::coverage. O(samples), rows in parallel.
 void resolve(const FrameLayers& layers, const RenderSettings& settings, int first_row, Image& linear);
+
+/// Hair that is a picture of its own over the opaque scene, whose samples are averaged, over the backdrop; exposure in stops applied.
+/// opaque: of all of the picture, or empty. O(pixels), rows in parallel.
+Image hair_over(const HairPicture& hair, const OpaqueLayer& opaque, const Backdrop& backdrop, int width, int height,
+                float exposure);
 
 }  // namespace pelage

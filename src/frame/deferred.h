@@ -91,4 +91,10 @@ struct DeferredBuffer {
   Buffer<PixelKey> sample_keys;   ///< [h·w·samples]
 };
 
+/// The hair of the part of the picture that a DeferredBuffer shows, without its background.
+struct HairPicture {
+  int left = 0, top = 0, width = 0, height = 0;  ///< pixels
+  Buffer<Vec4> color;                            ///< [h·w] premultiplied linear R, G, B and opacity
+};
+
 }  // namespace pelage

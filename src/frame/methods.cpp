@@ -17,6 +17,7 @@
 #include "filter/strand_curves.h"
 #include "filter/taa.h"
 #include "frame/camera_view.h"
+#include "frame/deferred_frame.h"
 #include "frame/linked_frame.h"
 #include "frame/sample_positions.h"
 
@@ -182,6 +183,7 @@ Beauty render_beauty(const FrameInputs& inputs, MethodState& state, Stages& stag
     case Method::kSmaa: return morphological(inputs, stages);
     case Method::kLink: return displayed(linked(inputs, stages), tone_map, stages);
     case Method::kOidn: return displayed(denoised(inputs, stages), tone_map, stages);
+    case Method::kSwr: return displayed(render_deferred(inputs, state.grooms, stages), tone_map, stages);
   }
   return displayed(multisampled(inputs, stages), tone_map, stages);
 }

@@ -5,7 +5,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "frame/deferred.h"
 #include "frame/one_frame.h"
 
 namespace pelage {
@@ -21,6 +23,7 @@ struct MethodState {
 
   std::unique_ptr<TaaHistory> history;  ///< null before the first picture
   std::uint32_t next_frame = 0;         ///< place in the sequence of jitters
+  std::vector<DeferredGroom> grooms;    ///< of method swr, prepared once
 };
 
 /// The same picture for further work and for a display, as in RenderResult.

@@ -16,6 +16,7 @@
 #include "filter/oidn.h"
 #include "frame/camera_view.h"
 #include "frame/check_settings.h"
+#include "frame/deferred_frame.h"
 #include "frame/linked_frame.h"
 #include "frame/methods.h"
 #include "frame/one_frame.h"
@@ -33,6 +34,13 @@ void check_settings(const RenderSettings& s) {
   require(s.method != Method::kMsaa || is_sample_count(s.samples), "samples", s.samples,
           "1, 2, 4, 8 or 16; others with method ssaa");
   require(!is_linking(s.method) || is_link_sample_count(s.samples), "samples", s.samples, "1, 4, 9 or 16 with method link");
+  require(s.method != Method::kSwr || is_deferred_sample_count(s.samples), "samples", s.samples,
+          "1, 2, 4 or 8 with method swr");
+  require(s.swr.points >= 3 && s.swr.points <= 127, "swr.points", s.swr.points, "3…127");
+  require(s.swr.radius >= 1 && s.swr.radius <= 15, "swr.radius", s.swr.radius, "1…15");
+  require(s.swr.s_parallel > 0, "swr.s_parallel", s.swr.s_parallel, "a positive number");
+  require(s.swr.s_perpendicular > 0, "swr.s_perpendicular", s.swr.s_perpendicular, "a positive number");
+  require(s.swr.sigma_color > 0, "swr.sigma_color", s.swr.sigma_color, "a positive number");
   require(s.link.kernel_size >= 0 && s.link.kernel_size <= 1, "link.kernel_size", s.link.kernel_size, "0…1");
   require(s.link.kernel_radius >= 0 && s.link.kernel_radius <= 64, "link.kernel_radius", s.link.kernel_radius, "0…64");
   require(s.link.falloff > 0, "link.falloff", s.link.falloff, "a positive number of half axes");
@@ -51,11 +59,21 @@ namespace {
 StageWork groom_work(const Scene& scene) {
   StageWork work;
   for (const GroomInstance& groom : scene.grooms) {
+    if (groom.hair_mesh) work.bytes += resident_bytes(*groom.hair_mesh);
+    if (groom.hair_mesh && !groom.strands) {
+      work.items += groom.hair_mesh->vertex_count();
+      continue;
+    }
     if (!groom.strands) throw Error("scene", groom.name, "a groom without strands", "set GroomInstance::strands");
     work.items += groom.strands->point_count();
     work.bytes += resident_bytes(*groom.strands);
   }
   return work;
+}
+
+/// Whether the picture is made from hair meshes as they are; views other than beauty look at their strands.
+bool draws_hair_meshes(const RenderSettings& settings) {
+  return settings.method == Method::kSwr && settings.view == View::kBeauty;
 }
 
 /// Where things were from the scene's previous camera.
@@ -91,12 +109,16 @@ struct PictureSequence::State {
   std::optional<LightRig> rig;
   MethodState method;
 
-  explicit State(Scene s) : scene(std::move(s)), meshes(scene.meshes) {}
+  explicit State(Scene s) : scene(std::move(s)), meshes(scene.meshes) {
+    // Strands of hair meshes are only made where something looks at strands.
+    if (draws_hair_meshes(scene.settings)) method.grooms = prepare_deferred(scene);
+    else expand_hair_meshes(scene);
+  }
 };
 
 PictureSequence::PictureSequence(Scene scene) {
   check_settings(scene.settings);
-  groom_work(scene);
+  groom_work(scene);  // names a groom without strands
   state_ = std::make_unique<State>(std::move(scene));
 }
 PictureSequence::~PictureSequence() = default;
@@ -113,12 +135,13 @@ RenderResult PictureSequence::next(const Camera& camera, const Progress& progres
   const bool beauty = settings.view == View::kBeauty;
   if (beauty && !state_->rig)
     stages.run("light", "maps", [&](const Progress&) {
-      state_->rig = prepare_lights(scene, state_->meshes);
+      state_->rig = prepare_lights(draws_hair_meshes(settings) ? light_stand_in(scene) : scene, state_->meshes);
       return StageWork{state_->rig->lights.size(), resident_bytes(*state_->rig)};
     });
 
   const LightRig dark;
-  const FrameInputs inputs{scene, state_->meshes, beauty ? *state_->rig : dark, view, number_segments(scene, view)};
+  const FrameInputs inputs{scene, state_->meshes, beauty ? *state_->rig : dark, view,
+                           draws_hair_meshes(settings) ? SegmentNumbering() : number_segments(scene, view)};
   RenderResult result;
   if (beauty) {
     Beauty picture = render_beauty(inputs, state_->method, stages);

@@ -71,4 +71,7 @@ inline Vec2 jitter_position(std::uint32_t frame) { return {radical_inverse(frame
 inline bool is_linking(Method method) { return method == Method::kLink || method == Method::kLinkTaa; }
 inline bool is_link_sample_count(int samples) { return samples == 1 || samples == 4 || samples == 9 || samples == 16; }
 
+/// Samples a pixel that method swr can take.
+inline bool is_deferred_sample_count(int samples) { return samples == 1 || samples == 2 || samples == 4 || samples == 8; }
+
 }  // namespace pelage

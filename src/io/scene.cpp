@@ -67,7 +67,17 @@ class Loader {
     groom.strands =
         std::make_shared<StrandSet>(text.grow ? grow(text.grow->settings, surface(text.grow->surface, place, meshes), progress_)
                                               : read_strands(file(text.file), text.import, nullptr, progress_));
+    groom.color_map = load_map(text.color_map, place + "/color_map");
+    groom.color_along = load_map(text.color_along, place + "/color_along");
     return groom;
+  }
+
+  /// An image with colors; null for no name.
+  std::shared_ptr<const Image> load_map(const std::string& name, const std::string& place) const {
+    if (name.empty()) return nullptr;
+    auto map = std::make_shared<Image>(read_image(file(name)));
+    if (map->channel_count() < 3) fail(place, "the image has no red, green and blue", "");
+    return map;
   }
 
   TriangleMesh surface(const std::string& name, const std::string& place, const std::vector<MeshInstance>& meshes) const {

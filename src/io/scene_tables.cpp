@@ -225,6 +225,32 @@ const Fields<GroomText>& groom_fields() {
       nested(part, object_field("material", "How a strand scatters light", &G::material, material_fields())),
       object_field("transform", "Object to world", &GroomText::transform, transform_fields()),
       nested(part, number_field("width_scale", "Multiplies every width", &G::width_scale, 1e-6, 1e6)),
+      nested(part, number_field("lod_lambda", "Of a hair mesh: more keeps more strands far away", &G::lod_lambda, 0.01, 1000)),
+      text_field("color_map", "Of a hair mesh: image of its color over u and v, relative to the scene file",
+                 &GroomText::color_map),
+      text_field("color_along", "Of a hair mesh: image of its color from root to tip, in its first row",
+                 &GroomText::color_along),
+  };
+  return table;
+}
+
+const Fields<SwrSettings>& swr_fields() {
+  using S = SwrSettings;
+  static const Names<SwrAlpha> alphas{{"ratio", SwrAlpha::kRatio}, {"coverage", SwrAlpha::kCoverage}};
+  static const Fields<S> table{
+      boolean_field("lod", "Whether bundles that are small on the screen have fewer strands and points", &S::lod),
+      integer_field("points", "Control points of a strand at full detail", &S::points, 3, 127),
+      boolean_field("thicken", "Whether strands take over the width of those that are left out", &S::thicken),
+      boolean_field("depth_correction", "Whether light comes through strands that are left out", &S::depth_correction),
+      boolean_field("filter", "Whether pictures of one sample are reconnected and smoothed along strands", &S::filter),
+      integer_field("radius", "Pixels from the middle to the side of the filter's window", &S::radius, 1, 15),
+      number_field("s_parallel", "Standard deviation along the strand, over the radius", &S::s_parallel, 0.01, 100),
+      number_field("s_perpendicular", "Standard deviation across it, over the radius", &S::s_perpendicular, 0.01, 100),
+      number_field("sigma_color", "Linear radiance", &S::sigma_color, 1e-6, 1e6),
+      number_field("depth_tolerance", "Share of the hair's depth within which neighbors count", &S::depth_tolerance, 0, 1),
+      number_field("connect_depth", "Share of the hair's depth from which a strand is another one", &S::connect_depth, 0, 1),
+      number_field("strip", "Pixels, half the width of the strip in which hits are counted", &S::strip, 0, 15),
+      choice_field("alpha", "Opacity: share of center hits along the strand, or exact area", &S::alpha, alphas),
   };
   return table;
 }
@@ -258,11 +284,11 @@ const Fields<LinkSettings>& link_fields() {
 Field<RenderSettings> method_field() {
   static const Names<Method> methods{{"msaa", Method::kMsaa},        {"ssaa", Method::kSsaa}, {"taa", Method::kTaa},
                                      {"fxaa", Method::kFxaa},        {"smaa", Method::kSmaa}, {"link", Method::kLink},
-                                     {"link-taa", Method::kLinkTaa}, {"oidn", Method::kOidn}};
+                                     {"link-taa", Method::kLinkTaa}, {"oidn", Method::kOidn}, {"swr", Method::kSwr}};
   Field<RenderSettings> field = choice_field("method", "How the picture is anti-aliased", &RenderSettings::method, methods);
   field.read = [read = field.read](const JsonValue& v, RenderSettings& out) {
     read(v, out);
-    if (is_linking(out.method)) out.samples = 1;
+    if (is_linking(out.method) || out.method == Method::kSwr) out.samples = 1;
   };
   return field;
 }
@@ -281,7 +307,8 @@ const Fields<RenderSettings>& settings_fields() {
       // Before the samples, whose range it decides.
       method_field(),
       {"samples",
-       {{"description", "Per pixel: 1, 2, 4, 8 or 16 for msaa, 1, 4, 9 or 16 for link, any number for ssaa"},
+       {{"description",
+         "Per pixel: 1, 2, 4, 8 or 16 for msaa, 1, 4, 9 or 16 for link, 1, 2, 4 or 8 for swr, any number for ssaa"},
         {"type", "integer"},
         {"minimum", 1},
         {"maximum", 4096}},
@@ -291,11 +318,14 @@ const Fields<RenderSettings>& settings_fields() {
            v.fail(std::to_string(n) + " samples per pixel", "1, 2, 4, 8 or 16; others with method ssaa");
          if (is_linking(out.method) && !is_link_sample_count(static_cast<int>(n)))
            v.fail(std::to_string(n) + " samples per pixel", "1, 4, 9 or 16 with method link");
+         if (out.method == Method::kSwr && !is_deferred_sample_count(static_cast<int>(n)))
+           v.fail(std::to_string(n) + " samples per pixel", "1, 2, 4 or 8 with method swr");
          out.samples = static_cast<int>(n);
        }},
       integer_field("frames", "Frames that taa takes of a still camera for one picture", &S::frames, 1, 4096),
       choice_field("alpha", "Opacity: share of covered samples, or exact area", &S::alpha, alphas),
       object_field("link", "Strand linking, of the methods link and link-taa", &S::link, link_fields()),
+      object_field("swr", "Deferred software rasterization of hair meshes, of the method swr", &S::swr, swr_fields()),
       choice_field("view", "What the picture shows", &S::view, views),
       number_field("exposure", "Stops", &S::exposure, -100, 100),
       choice_field("tone_map", "Curve of the display picture", &S::tone_map, tone_maps),

@@ -41,7 +41,7 @@ struct GrowText {
 
 struct GroomText {
   GroomInstance instance;
-  std::string file;
+  std::string file, color_map, color_along;
   std::optional<GrowText> grow;  // exactly one of file and grow
   ImportOptions import;
   TransformText transform;

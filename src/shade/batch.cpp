@@ -1,5 +1,6 @@
 #include "shade/batch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -35,6 +36,12 @@ MapConstants shadow_constants(const ShadowMap& map) {
 }
 
 }  // namespace
+
+void pad(ShadeBatch& batch) {
+  for (ShadeBatch::Lanes* lanes : {&batch.px, &batch.py, &batch.pz, &batch.tx, &batch.ty, &batch.tz, &batch.ex, &batch.ey,
+                                   &batch.ez, &batch.absorb_r, &batch.absorb_g, &batch.absorb_b, &batch.depth_shift})
+    std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
+}
 
 std::vector<LightConstants> light_constants(const LightRig& rig) {
   std::vector<LightConstants> all;

@@ -24,8 +24,12 @@ struct ShadeBatch {
   alignas(64) Lanes tx, ty, tz;                    ///< tangent, unit length
   alignas(64) Lanes ex, ey, ez;                    ///< direction to the eye, unit length
   alignas(64) Lanes absorb_r, absorb_g, absorb_b;  ///< per fiber radius
+  alignas(64) Lanes depth_shift{};                 ///< strands between it and every light that are not there after all
   alignas(64) Lanes r, g, b;                       ///< result: radiance, W/(m²·sr)
 };
+
+/// Copies lane 0 behind the last one, so that whole vectors see valid numbers.
+void pad(ShadeBatch& batch);
 
 /// A map of a light, as plain numbers and pointers that outlive the evaluation.
 struct MapConstants {

@@ -108,6 +108,7 @@ struct ShadePlace {
   ScatterAverages averages;  // with dual scattering
   ScatterBack back;          //
   Vec3 tuft_color;           // of what has a diffuse lobe
+  Float depth_shift;         // crossings
 };
 
 // Lobes of the models that have Marschner's kinds. Chiang's model is near-field: its mean over the fiber is shaded with.
@@ -142,6 +143,7 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   s.fiber = scatter_fiber(Float(material.eta), Float(material.beta_longitudinal), Float(material.beta_azimuthal),
                           Float(material.cuticle_tilt), Float(material.specular_gain), absorption);
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
+  s.depth_shift = load(batch.depth_shift.data() + i);
   const bool diffuse = material.model == HairMaterial::Model::kKajiyaKay || material.model == HairMaterial::Model::kPelekis;
   if (diffuse && !k.dual_scattering) s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
   if (material.model == HairMaterial::Model::kSadeghi) {
@@ -248,7 +250,7 @@ PELAGE_LANES_FN Vec3 shade_diffused(HairMaterial::Model model, const ShadePlace&
 PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light) {
   const ShadeIllumination i = shade_illuminate(light, s.position);
   const ShadeAngles a = shade_angles(s, i.to_light);
-  const Float n = shade_crossings(light.opacity, s.position);
+  const Float n = max(shade_crossings(light.opacity, s.position) - s.depth_shift, Float(0.0f));
   const Vec3 arriving = i.irradiance * shade_mesh_visibility(light.shadow, s.position);
   const Vec3 single = shade_single(k.material.model, s, light, a);
   if (k.material.model == HairMaterial::Model::kKajiyaKay) return arriving * single * shade_kajiya_kay_transmittance(s, n);

@@ -51,13 +51,6 @@ void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, 
   if (visibility) *visibility = g.packer->sample(segment, t, s);
 }
 
-/// Copies lane 0 behind the last one, so that whole vectors see valid numbers.
-void pad(ShadeBatch& batch) {
-  for (ShadeBatch::Lanes* lanes : {&batch.px, &batch.py, &batch.pz, &batch.tx, &batch.ty, &batch.tz, &batch.ex, &batch.ey,
-                                   &batch.ez, &batch.absorb_r, &batch.absorb_g, &batch.absorb_b})
-    std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
-}
-
 /// Shades what the keys at `visible` show, at most ShadeBatch::kSize of them, groom by groom. `visibility` may be null.
 void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, std::span<const std::uint32_t> visible,
                  Evaluator evaluator, ShadeBatch& batch, Vec3* color, StrandSample* visibility) {

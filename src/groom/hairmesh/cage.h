@@ -30,6 +30,9 @@ struct BundleCage {
   const StyleOperator* find(StyleOperator::Kind kind) const;
 };
 
+/// Place in the groom, 0…1, of strand number `strand` of the bundle.
+Vec2 groom_place(const BundleCage& cage, std::uint32_t strand);
+
 /// Derivative of the positions by layer at vertex `i` of column `c`: as stored, or central differences.
 Vec3 layer_tangent(const HairMesh& mesh, std::uint32_t column, std::uint32_t layer);
 

@@ -54,10 +54,10 @@ constexpr float kTwoPi = 6.28318531f;
 
 void make_strand(const BundleCage& cage, const Operators& ops, std::uint32_t strand, std::size_t l, StrandTraits& t) {
   const HairMesh::Bundle& bundle = *cage.bundle;
-  const Vec2 uv = strand_place(bundle, strand), groom = bilinear(cage.root_uv, uv);
+  const Vec2 uv = strand_place(bundle, strand), groom = groom_place(cage, strand);
   const Draw own = draw(bundle, Of::kStrand, strand);
   t.u[l] = uv.x, t.v[l] = uv.y;
-  t.groom_u[l] = std::clamp(groom.x, 0.f, 1.f), t.groom_v[l] = std::clamp(groom.y, 0.f, 1.f);
+  t.groom_u[l] = groom.x, t.groom_v[l] = groom.y;
   t.length[l] = ops.length ? ops.length->amount * (1 - ops.length->variation * own.x) : 1.f;
 
   const Clump clump = clump_at(bundle, uv, ops.clump ? ops.clump->frequency : 1.f);
@@ -87,6 +87,11 @@ Vec2 strand_place(const HairMesh::Bundle& bundle, std::uint32_t strand) {
   constexpr std::uint32_t kStepU = 3242174889u, kStepV = 2447445414u;
   const RandomBits start = pcg4d(bundle.seed, 0x75u, 0x76u, 0);
   return {uniform_from_bits(start.x + strand * kStepU), uniform_from_bits(start.y + strand * kStepV)};
+}
+
+Vec2 groom_place(const BundleCage& cage, std::uint32_t strand) {
+  const Vec2 place = bilinear(cage.root_uv, strand_place(*cage.bundle, strand));
+  return {std::clamp(place.x, 0.f, 1.f), std::clamp(place.y, 0.f, 1.f)};
 }
 
 void make_traits(const BundleCage& cage, std::uint32_t first, std::size_t count, StrandTraits& traits) {

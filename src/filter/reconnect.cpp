@@ -1,0 +1,258 @@
+#include "filter/reconnect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "filter/kernel_taps.h"
+#include "filter/matte.h"
+#include "frame/camera_view.h"
+
+namespace pelage {
+namespace {
+
+/// A neighbor within reach of the kernel, for one direction of the strand.
+struct Tap {
+  std::int32_t offset;  // in pixels of the padded picture
+  float along;          // d∥, pixels: along the strand, to the right or straight down
+  float weight;         // spatial term of eq. 10
+  float in_strip;       // 1 within the strip in which hits are counted, else 0
+};
+
+/// Taps by direction. Those of little weight are left out, unless they lie in the strip.
+class TapTable {
+ public:
+  TapTable(const SwrSettings& s, std::size_t stride) : first_(DirectionCells::kDirections + 1) {
+    const float r = static_cast<float>(s.radius), sigma_along = r * s.s_parallel, sigma_across = r * s.s_perpendicular;
+    for (int cell = 0; cell < DirectionCells::kDirections; ++cell) {
+      first_[static_cast<std::size_t>(cell)] = taps_.size();
+      const Vec2 t = DirectionCells::middle(cell);
+      for (int y = -s.radius; y <= s.radius; ++y)
+        for (int x = -s.radius; x <= s.radius; ++x) {
+          const Vec2 d(static_cast<float>(x), static_cast<float>(y));
+          const float along = dot(d, t), across = length(d - t * along);
+          const float weight =
+              std::exp(-along * along / (sigma_along * sigma_along) - across * across / (sigma_across * sigma_across));
+          const bool strip = across <= s.strip;
+          if (weight < kLeastReconnectWeight && !strip) continue;
+          const float counted = weight < kLeastReconnectWeight ? 0 : weight;
+          taps_.push_back({y * static_cast<std::int32_t>(stride) + x, along, counted, strip ? 1.f : 0.f});
+        }
+    }
+    first_.back() = taps_.size();
+  }
+  std::span<const Tap> of(int cell) const {
+    const auto c = static_cast<std::size_t>(cell);
+    return std::span(taps_).subspan(first_[c], first_[c + 1] - first_[c]);
+  }
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<Tap> taps_;
+};
+
+constexpr float kNoDepth = 1e30f;  // of pixels without a hit: no neighbor is as deep
+
+/// Both layers with a border of `reach` empty pixels, so that a kernel needs no ends.
+struct Padded {
+  int reach;
+  std::size_t stride;
+  Buffer<Vec4> color;             // of the strand that the center shows; w: 1 there, 0 where there is none
+  Buffer<float> center, touched;  // depth of either layer in units of the hair's depth range, or kNoDepth
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y + reach) * stride + static_cast<std::size_t>(x + reach);
+  }
+};
+
+Padded pad_layers(const DeferredBuffer& buffer, const Radiance& radiance, int reach) {
+  const int width = buffer.view.width, height = buffer.view.height;
+  Padded p;
+  p.reach = reach, p.stride = static_cast<std::size_t>(width + 2 * reach);
+  const std::size_t size = p.stride * static_cast<std::size_t>(height + 2 * reach);
+  p.color.resize(size), p.center.resize(size), p.touched.resize(size);
+  const auto depth_of = [](PixelKey key) {
+    return key == kEmptyPixel ? kNoDepth : static_cast<float>(deferred::depth_level(key)) * (1 / kernel::kRasterDepthLevels);
+  };
+  parallel_for(static_cast<std::size_t>(height + 2 * reach), 16, [&](std::size_t first, std::size_t last) {
+    std::fill(&p.color[first * p.stride], &p.color[first * p.stride] + (last - first) * p.stride, Vec4(0, 0, 0, 0));
+    std::fill(&p.center[first * p.stride], &p.center[first * p.stride] + (last - first) * p.stride, kNoDepth);
+    std::fill(&p.touched[first * p.stride], &p.touched[first * p.stride] + (last - first) * p.stride, kNoDepth);
+    for (int y = static_cast<int>(first) - reach; y < static_cast<int>(last) - reach; ++y) {
+      if (y < 0 || y >= height) continue;
+      std::size_t q = static_cast<std::size_t>(y) * static_cast<std::size_t>(width), to = p.index(0, y);
+      for (int x = 0; x < width; ++x, ++q, ++to) {
+        if (buffer.conservative[q] == kEmptyPixel) continue;
+        p.touched[to] = depth_of(buffer.conservative[q]), p.center[to] = depth_of(buffer.center[q]);
+        if (const std::uint32_t i = radiance.index[q]; i != Radiance::kNone) {
+          const Vec3 c = radiance.color[i];
+          p.color[to] = {c.x, c.y, c.z, 1};
+        }
+      }
+    }
+  });
+  return p;
+}
+
+/// A strand as a pixel of either layer shows it.
+struct ScreenStrand {
+  int cell;     // of its direction on the screen
+  float depth;  // of the range
+  float slope;  // by which depth grows along the direction, per pixel
+};
+
+/// Mean of neighbors and their hits.
+struct Gathered {
+  Vec4 sum;                 // weighted colors; w: their weights
+  float hits = 0, all = 0;  // center and conservative hits in the strip
+};
+
+/// e^−x for x ≥ 0, too large by 0.028 at most (at x = 3); cheap, and the same on every machine.
+float falling(float x) { return 1 / (1 + x * (1 + x * (0.5f + x * (1.f / 6)))); }
+
+class Reconnecter {
+ public:
+  Reconnecter(const DeferredBuffer& buffer, const Radiance& radiance, const SwrSettings& s, const Buffer<float>& coverage)
+      : buffer_(buffer), settings_(s), coverage_(coverage), padded_(pad_layers(buffer, radiance, s.radius)),
+        taps_(s, padded_.stride), color_scale_(1 / (s.sigma_color * s.sigma_color)) {}
+
+  Vec4 pixel(int x, int y) const {
+    const std::size_t at =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(buffer_.view.width) + static_cast<std::size_t>(x);
+    const PixelKey touched = buffer_.conservative[at], center = buffer_.center[at];
+    if (touched == kEmptyPixel) return {0, 0, 0, 0};
+    const std::size_t middle = padded_.index(x, y);
+    if (center == kEmptyPixel) return promoted(touched, x, y, at);
+    const Vec4 own = centered(center, x, y, at);
+    if (padded_.touched[middle] > padded_.center[middle] - settings_.connect_depth) return own;
+    // Another strand in front: laid over the pixel's own, which is opaque then.
+    const float alpha = own.w;
+    const Vec4 behind = alpha > 0 ? Vec4(own.x / alpha, own.y / alpha, own.z / alpha, 1) : own;
+    const Vec4 front = in_front(touched, x, y);
+    const float through = 1 - front.w;
+    return {front.x + behind.x * through, front.y + behind.y * through, front.z + behind.z * through, 1};
+  }
+
+ private:
+  ScreenStrand strand(PixelKey key, int x, int y) const {
+    const CameraView& v = buffer_.view;
+    const float z = buffer_.range.metres(deferred::depth_level(key)), scale = (v.perspective ? z : 1.f) / v.focal;
+    const Vec3 place((static_cast<float>(x) + 0.5f - v.center_x) * scale, (static_cast<float>(y) + 0.5f - v.center_y) * scale,
+                     z);
+    const Vec3 along = transform_vector(v.world_to_camera, deferred::tangent(key));
+    const Vec2 on_screen = project_direction(v, place, along);
+    const float pixels = length(on_screen);
+    const float depth = static_cast<float>(deferred::depth_level(key)) * (1 / kernel::kRasterDepthLevels);
+    if (!(pixels > 0)) return {0, depth, 0};
+    const Vec2 t = on_screen * (1 / pixels);
+    const int cell = DirectionCells::cell_of(MeanDirection::doubled(t));
+    const float sign = dot(t, DirectionCells::middle(cell)) < 0 ? -1.f : 1.f;
+    // No steeper than a pixel for a pixel: what is seen nearly end-on is short.
+    const float steepest = scale, per_pixel = std::clamp(along.z / pixels, -steepest, steepest);
+    return {cell, depth, sign * per_pixel / (buffer_.range.far_end - buffer_.range.near_end)};
+  }
+
+  /// `color`: that of the pixel, for the term of color; null for none. `nearby`: hits count only where they are as deep.
+  Gathered gather(const ScreenStrand& s, std::size_t middle, const Vec4* color, bool nearby) const {
+    Gathered g;
+    const float tolerance = settings_.depth_tolerance;
+    for (const Tap& tap : taps_.of(s.cell)) {
+      const std::size_t q = middle + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(tap.offset));
+      const float expected = s.depth + s.slope * tap.along;
+      const float center = padded_.center[q], touched = padded_.touched[q];
+      const bool alike = std::fabs(center - expected) <= tolerance;
+      g.hits += center != kNoDepth && (alike || !nearby) ? tap.in_strip : 0;
+      g.all += touched != kNoDepth && (!nearby || std::fabs(touched - expected) <= tolerance) ? tap.in_strip : 0;
+      if (!alike || !(tap.weight > 0)) continue;
+      const Vec4 c = padded_.color[q];
+      float w = tap.weight;
+      if (color) {
+        const float r = c.x - color->x, gr = c.y - color->y, b = c.z - color->z;
+        w *= falling((r * r + gr * gr + b * b) * color_scale_);
+      }
+      g.sum.x += c.x * w, g.sum.y += c.y * w, g.sum.z += c.z * w, g.sum.w += w;
+    }
+    return g;
+  }
+
+  float opacity(const Gathered& g, std::size_t at) const {
+    if (!coverage_.empty()) return coverage_[at];
+    return g.all > 0 ? std::min(g.hits / g.all, 1.f) : 1.f;
+  }
+  static Vec4 premultiplied(const Gathered& g, float alpha) {
+    if (!(g.sum.w > 0)) return {0, 0, 0, 0};
+    const float scale = alpha / g.sum.w;
+    return {g.sum.x * scale, g.sum.y * scale, g.sum.z * scale, alpha};
+  }
+
+  Vec4 centered(PixelKey key, int x, int y, std::size_t at) const {
+    const std::size_t middle = padded_.index(x, y);
+    const Gathered g = gather(strand(key, x, y), middle, &padded_.color[middle], false);
+    return premultiplied(g, opacity(g, at));
+  }
+  Vec4 promoted(PixelKey key, int x, int y, std::size_t at) const {
+    const Gathered g = gather(strand(key, x, y), padded_.index(x, y), nullptr, false);
+    return premultiplied(g, opacity(g, at));
+  }
+  Vec4 in_front(PixelKey key, int x, int y) const {
+    const Gathered g = gather(strand(key, x, y), padded_.index(x, y), nullptr, true);
+    return premultiplied(g, g.all > 0 ? std::min(g.hits / g.all, 1.f) : 0.f);
+  }
+
+  const DeferredBuffer& buffer_;
+  const SwrSettings& settings_;
+  const Buffer<float>& coverage_;
+  const Padded padded_;
+  const TapTable taps_;
+  float color_scale_;
+};
+
+HairPicture picture_like(const DeferredBuffer& buffer) {
+  HairPicture picture;
+  picture.left = buffer.left, picture.top = buffer.top;
+  picture.width = buffer.view.width, picture.height = buffer.view.height;
+  picture.color.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
+  return picture;
+}
+
+}  // namespace
+
+HairPicture reconnect(const DeferredBuffer& buffer, const Radiance& radiance, const SwrSettings& settings,
+                      const Buffer<float>& coverage) {
+  HairPicture picture = picture_like(buffer);
+  if (picture.color.empty()) return picture;
+  PELAGE_CHECK_EQ(buffer.conservative.size(), picture.color.size());
+  PELAGE_CHECK_EQ(radiance.index.size(), picture.color.size());
+  const Reconnecter reconnecter(buffer, radiance, settings, coverage);
+  const auto width = static_cast<std::size_t>(picture.width);
+  parallel_for(static_cast<std::size_t>(picture.height), 4, [&](std::size_t first, std::size_t last) {
+    for (std::size_t y = first; y < last; ++y)
+      for (std::size_t x = 0; x < width; ++x)
+        picture.color[y * width + x] = reconnecter.pixel(static_cast<int>(x), static_cast<int>(y));
+  });
+  return picture;
+}
+
+HairPicture mean_of_samples(const DeferredBuffer& buffer, const Radiance& radiance) {
+  HairPicture picture = picture_like(buffer);
+  if (picture.color.empty()) return picture;
+  const std::size_t samples = radiance.index.size() / picture.color.size();
+  const float share = 1 / static_cast<float>(samples);
+  parallel_for(picture.color.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      Vec4 sum(0, 0, 0, 0);
+      for (std::size_t i = p * samples; i < (p + 1) * samples; ++i) {
+        if (radiance.index[i] == Radiance::kNone) continue;
+        const Vec3 c = radiance.color[radiance.index[i]];
+        sum.x += c.x, sum.y += c.y, sum.z += c.z, sum.w += 1;
+      }
+      picture.color[p] = {sum.x * share, sum.y * share, sum.z * share, sum.w * share};
+    }
+  });
+  return picture;
+}
+
+}  // namespace pelage

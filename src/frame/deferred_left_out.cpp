@@ -1,0 +1,15 @@
+// In place of method swr where a build leaves hair meshes out.
+#include <pelage/error.h>
+
+#include "frame/deferred_frame.h"
+
+namespace pelage {
+
+std::vector<DeferredGroom> prepare_deferred(const Scene&) {
+  throw Error("settings", "method", "this build of Pelage has no hair meshes, which method swr draws",
+              "build it with -D PELAGE_HAIRMESH=ON, or use another method");
+}
+Scene light_stand_in(const Scene& scene) { return scene; }
+Image render_deferred(const FrameInputs&, std::span<const DeferredGroom>, Stages&) { return {}; }
+
+}  // namespace pelage
