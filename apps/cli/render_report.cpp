@@ -17,7 +17,8 @@ std::uint64_t peak_resident_bytes() {
 
 std::uint64_t control_points(const Scene& scene) {
   std::uint64_t points = 0;
-  for (const GroomInstance& groom : scene.grooms) points += groom.strands->point_count();
+  for (const GroomInstance& groom : scene.grooms)
+    points += groom.strands ? groom.strands->point_count() : groom.hair_mesh->vertex_count();
   return points;
 }
 

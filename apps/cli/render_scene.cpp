@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <pelage/error.h>
 #include <pelage/grow.h>
+#include <pelage/io.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,8 @@
 
 #include "core/nearest.h"
 #include "frame/sample_positions.h"
+#include "io/byte_source.h"
+#include "io/file_kind.h"
 #include "render.h"
 #include "verbs.h"
 
@@ -94,17 +97,27 @@ void apply_hair_color(const std::string& name, HairMaterial& m) {
   else m.color = hair.tuft;
 }
 
+/// Whether the mannequin belongs below the groom.
+bool grown_on_mannequin(const GroomInstance& groom) {
+  if (groom.strands) return pelage::grown_on_mannequin(*groom.strands);
+  return pelage::grown_on_mannequin(expand(*groom.hair_mesh, {.points = 17, .share = 0.01f}));
+}
+
 void read_groom_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes, Scene& scene) {
   ImportReport report;
   GroomInstance& groom = scene.grooms.emplace_back();
-  groom.strands = std::make_shared<StrandSet>(read_strands(options.input, options.import, &report, progress));
-  if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
+  if (io::file_kind(io::ByteSource::open(options.input)).content == io::FileContent::kHairMesh) {
+    groom.hair_mesh = std::make_shared<HairMesh>(read_hair_mesh(options.input));
+  } else {
+    groom.strands = std::make_shared<StrandSet>(read_strands(options.input, options.import, &report, progress));
+    if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
+  }
   notes = report.notes;
   if (!report.repairs.clean()) notes.push_back(report.repairs.summary());
   // Meshes that belong to a groom come in its units and axes.
   for (const std::string& path : options.meshes)
     scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(read_mesh(path, report.scale, report.up));
-  if (options.meshes.empty() && !options.no_head && grown_on_mannequin(*groom.strands)) {
+  if (options.meshes.empty() && !options.no_head && grown_on_mannequin(groom)) {
     scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(mannequin_head());
     notes.push_back("with the mannequin it was grown on; --no-head leaves it away");
   }

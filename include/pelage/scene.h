@@ -220,9 +220,11 @@ struct Scene {
   RenderSettings settings;
 };
 
-/// Gives every groom that has a hair mesh and no strands those of the mesh at full detail. trace() and render() do it by
-/// themselves, but for Method::kSwr.
+/// Gives every groom that has a hair mesh and no strands those of the mesh at full detail. render(), trace() and render_gbuffer()
+/// do it by themselves, but for Method::kSwr.
 void expand_hair_meshes(Scene& scene, const Progress& progress = {});
+/// Whether expand_hair_meshes() would do something.
+bool has_unmade_strands(const Scene& scene);
 
 /// Box of all grooms and meshes in world space.
 Bounds bounds(const Scene& scene);

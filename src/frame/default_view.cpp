@@ -19,10 +19,18 @@ Bounds transformed(const Bounds& box, const Affine& transform) {
   return result;
 }
 
+/// The strands of a groom; of a hair mesh some of them, whether or not all have been made. Null for neither.
+std::shared_ptr<const StrandSet> some_strands(const GroomInstance& groom) {
+  if (!groom.hair_mesh) return groom.strands;
+  constexpr float kStrands = 2000;
+  const float share = std::min(1.f, kStrands / static_cast<float>(strand_count(*groom.hair_mesh)));
+  return std::make_shared<const StrandSet>(expand(*groom.hair_mesh, {.points = 17, .share = share}));
+}
+
 Bounds groom_bounds(const Scene& scene) {
   Bounds box;
   for (const GroomInstance& groom : scene.grooms)
-    if (groom.strands) box.extend(transformed(bounds(*groom.strands), groom.transform));
+    if (const auto strands = some_strands(groom)) box.extend(transformed(bounds(*strands), groom.transform));
   return box;
 }
 
@@ -50,7 +58,7 @@ std::vector<Vec3> subject_points(const Scene& scene) {
   constexpr float kSurroundings = 0.1f;  // of the groom's largest side
   std::vector<Vec3> points, mesh_points;
   for (const GroomInstance& groom : scene.grooms)
-    if (groom.strands) append_points(groom.strands->points, groom.transform, kLimit, points);
+    if (const auto strands = some_strands(groom)) append_points(strands->points, groom.transform, kLimit, points);
   for (const MeshInstance& mesh : scene.meshes)
     if (mesh.mesh) append_points(mesh.mesh->positions, mesh.transform, kLimit, mesh_points);
   if (points.empty()) return mesh_points;

@@ -1,5 +1,6 @@
 #include <pelage/scene.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "frame/material_map.h"
@@ -18,6 +19,11 @@ void color_points(const GroomInstance& groom, StrandSet& set) {
 }
 
 }  // namespace
+
+bool has_unmade_strands(const Scene& scene) {
+  return std::any_of(scene.grooms.begin(), scene.grooms.end(),
+                     [](const GroomInstance& groom) { return groom.hair_mesh && !groom.strands; });
+}
 
 void expand_hair_meshes(Scene& scene, const Progress& progress) {
   for (GroomInstance& groom : scene.grooms) {

@@ -110,6 +110,11 @@ Image picture_of(const Scene& scene, const LinkInput& input) {
 }  // namespace
 
 Image render_gbuffer(const Scene& scene, const Progress& progress) {
+  if (has_unmade_strands(scene)) {
+    Scene made = scene;
+    expand_hair_meshes(made, progress);
+    return render_gbuffer(made, progress);
+  }
   Scene linked = scene;
   RenderSettings& settings = linked.settings;
   settings.method = Method::kLink;

@@ -8,6 +8,7 @@
 
 #include "core/nearest.h"
 #include "io/byte_source.h"
+#include "io/file_kind.h"
 #include "io/scene_tables.h"
 
 namespace pelage {
@@ -64,9 +65,12 @@ class Loader {
     require_one(place, "file", !text.file.empty(), "grow", text.grow.has_value());
     GroomInstance groom = text.instance;
     groom.transform = to_affine(text.transform);
-    groom.strands =
-        std::make_shared<StrandSet>(text.grow ? grow(text.grow->settings, surface(text.grow->surface, place, meshes), progress_)
-                                              : read_strands(file(text.file), text.import, nullptr, progress_));
+    if (text.grow)
+      groom.strands =
+          std::make_shared<StrandSet>(grow(text.grow->settings, surface(text.grow->surface, place, meshes), progress_));
+    else if (file_kind(ByteSource::open(file(text.file))).content == FileContent::kHairMesh)
+      groom.hair_mesh = std::make_shared<HairMesh>(read_hair_mesh(file(text.file)));
+    else groom.strands = std::make_shared<StrandSet>(read_strands(file(text.file), text.import, nullptr, progress_));
     groom.color_map = load_map(text.color_map, place + "/color_map");
     groom.color_along = load_map(text.color_along, place + "/color_along");
     return groom;

@@ -142,6 +142,11 @@ FilmBackdrop backdrop(const RenderSettings& settings) {
 }  // namespace
 
 TraceResult trace(const Scene& scene, const TraceSettings& settings, const Progress& progress) {
+  if (has_unmade_strands(scene)) {
+    Scene made = scene;
+    expand_hair_meshes(made, progress);
+    return trace(made, settings, progress);
+  }
   check_settings(settings);
   check_scene(scene);
   if (progress && !progress("build", 0)) throw Error("trace", "", "cancelled", "");
