@@ -28,7 +28,7 @@ bool has_unmade_strands(const Scene& scene) {
 void expand_hair_meshes(Scene& scene, const Progress& progress) {
   for (GroomInstance& groom : scene.grooms) {
     if (!groom.hair_mesh || groom.strands) continue;
-    StrandSet set = expand(*groom.hair_mesh, {}, progress);
+    StrandSet set = expand(*groom.hair_mesh, {.points = kHairMeshPoints}, progress);  // as method swr draws it
     if (has_color_maps(groom)) {
       color_points(groom, set);
       groom.material.color_source = HairMaterial::ColorSource::kStrand;
