@@ -56,7 +56,7 @@ Scene scene_with_strands() {
     set->offsets.push_back(static_cast<std::uint32_t>(set->points.size()));
   }
   Scene scene;
-  scene.grooms.push_back({"", set, {}, {}, 1});
+  scene.grooms.emplace_back().strands = set;
   scene.settings.opacity_map_size = 64;
   return scene;
 }

@@ -39,7 +39,7 @@ StrandSet linear(const std::vector<std::array<Vec3, 2>>& lines, float width) {
 /// A scene of 32×32 pixels that looks at the origin from +z, one metre away.
 Scene scene_of(StrandSet strands) {
   Scene scene;
-  scene.grooms.push_back({"", std::make_shared<StrandSet>(std::move(strands)), {}, {}, 1});
+  scene.grooms.emplace_back().strands = std::make_shared<StrandSet>(std::move(strands));
   scene.settings.width = scene.settings.height = 32;
   scene.settings.opacity_map_size = 64;
   return scene;
