@@ -11,6 +11,9 @@ void add_shade_cases(Suite& suite);
 void add_metrics_cases(Suite& suite);
 void add_filter_cases(Suite& suite);
 void add_link_cases(Suite& suite);
+#if PELAGE_HAIRMESH
+void add_swr_cases(Suite& suite);
+#endif
 void add_frame_cases(Suite& suite);
 void add_reference_cases(Suite& suite);
 
@@ -24,6 +27,9 @@ Suite all_cases() {
   add_metrics_cases(suite);
   add_filter_cases(suite);
   add_link_cases(suite);
+#if PELAGE_HAIRMESH
+  add_swr_cases(suite);
+#endif
   add_frame_cases(suite);
   add_reference_cases(suite);
   return suite;

@@ -59,11 +59,10 @@ Scene light_stand_in(const Scene& scene) {
   return stand_in;
 }
 
-Image render_deferred(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, Stages& stages) {
+HairPicture render_hair(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, const Buffer<float>& opaque_depth,
+                        Stages& stages, HairWork* work) {
   const Scene& scene = inputs.scene;
   const RenderSettings& settings = scene.settings;
-  const auto all_positions = sample_positions(settings.samples);
-  const std::span<const Vec2> positions = std::span(all_positions).first(static_cast<std::size_t>(settings.samples));
   const bool sampled = settings.samples > 1, filtered = settings.swr.filter && !sampled;
 
   LodSelection selection;
@@ -72,26 +71,19 @@ Image render_deferred(const FrameInputs& inputs, std::span<const DeferredGroom> 
     return StageWork{selection.strands, selection.bundles.size() * sizeof(BundleDraw)};
   });
 
-  OpaqueLayer opaque;
-  if (!inputs.meshes.empty())
-    stages.run("opaque", "samples", [&](const Progress&) {
-      opaque = trace_opaque(scene, inputs.view, positions, inputs.meshes, inputs.rig);
-      return StageWork{opaque.depth.size(),
-                       opaque.depth.bytes() + opaque.color.bytes() + opaque.first.bytes() + opaque.shade.bytes()};
-    });
-
   DeferredBuffer buffer;
   stages.run("raster", "points", [&](const Progress& progress) {
     place_deferred(scene, grooms, selection, inputs.view, buffer);
     const DeferredLayers layers{.center = !sampled, .conservative = filtered, .samples = sampled ? settings.samples : 0};
-    raster_hair_meshes(scene, grooms, selection, inputs.view, layers, opaque.depth, buffer, progress);
+    raster_hair_meshes(scene, grooms, selection, inputs.view, layers, opaque_depth, buffer, progress);
     return StageWork{selection.points, bytes_of(buffer)};
   });
-  opaque.depth.release();  // what it hides is gone
 
   Radiance radiance;
   stages.run("shade", "evaluations", [&](const Progress&) {
-    radiance = shade_deferred(scene, grooms, selection, buffer, inputs.rig, positions);
+    const auto positions = sample_positions(settings.samples);
+    radiance = shade_deferred(scene, grooms, selection, buffer, inputs.rig,
+                              std::span(positions).first(static_cast<std::size_t>(settings.samples)));
     return StageWork{radiance.color.size(), radiance.index.bytes() + radiance.color.bytes()};
   });
 
@@ -100,7 +92,23 @@ Image render_deferred(const FrameInputs& inputs, std::span<const DeferredGroom> 
     hair = filtered ? reconnect(buffer, radiance, settings.swr) : mean_of_samples(buffer, radiance);
     return StageWork{hair.color.size(), hair.color.bytes()};
   });
+  if (work) *work = {selection.strands, selection.points, radiance.color.size()};
+  return hair;
+}
 
+Image render_deferred(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, Stages& stages) {
+  const Scene& scene = inputs.scene;
+  const RenderSettings& settings = scene.settings;
+  OpaqueLayer opaque;
+  if (!inputs.meshes.empty())
+    stages.run("opaque", "samples", [&](const Progress&) {
+      const auto positions = sample_positions(settings.samples);
+      opaque = trace_opaque(scene, inputs.view, std::span(positions).first(static_cast<std::size_t>(settings.samples)),
+                            inputs.meshes, inputs.rig);
+      return StageWork{opaque.depth.size(),
+                       opaque.depth.bytes() + opaque.color.bytes() + opaque.first.bytes() + opaque.shade.bytes()};
+    });
+  const HairPicture hair = render_hair(inputs, grooms, opaque.depth, stages);
   Image linear;
   stages.run("composite", "pixels", [&](const Progress&) {
     linear = hair_over(hair, opaque, make_backdrop(scene, inputs.view), settings.width, settings.height, settings.exposure);

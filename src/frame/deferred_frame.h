@@ -3,6 +3,7 @@
 
 #include <pelage/image.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,16 @@ std::vector<DeferredGroom> prepare_deferred(const Scene& scene);
 
 /// `scene` with strands in place of its hair meshes that suffice for maps of light: a few thousand of each, widened for the rest.
 Scene light_stand_in(const Scene& scene);
+
+/// What render_hair() counts, besides the hair.
+struct HairWork {
+  std::uint64_t strands = 0, points = 0, evaluations = 0;
+};
+
+/// The hair of the scene, without its background: lod, raster, shade and filter. opaque_depth: of the whole picture, camera z,
+/// [height · width · samples], or empty.
+HairPicture render_hair(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, const Buffer<float>& opaque_depth,
+                        Stages& stages, HairWork* work = nullptr);
 
 /// The scene, linear: R, G, B, A, premultiplied.
 Image render_deferred(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, Stages& stages);

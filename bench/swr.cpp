@@ -1,0 +1,197 @@
+// Deferred software rasterization of hair meshes (Lipp 2026): its table 1 on this machine.
+//
+// A frame is what makes the hair of a picture: lod, raster, shade and filter, from the cages to premultiplied color. Maps of light
+// are made once, as in the paper; opaque meshes and the tone map are no part of it.
+#include <pelage/hair_mesh_styles.h>
+#include <pelage/runtime.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <memory>
+
+#include "bench.h"
+#include "core/mesh_tracer.h"
+#include "core/parallel.h"
+#include "frame/camera_view.h"
+#include "frame/deferred_frame.h"
+#include "frame/stages.h"
+#include "groom/hairmesh/prepared.h"
+#include "groom/hairmesh/strand_group.h"
+#include "light/light.h"
+#include "lod/bundle_lod.h"
+
+namespace pelage::bench {
+namespace {
+
+/// Height of the groom on a screen of 1080 rows.
+struct Distance {
+  const char* name;
+  float pixels;
+};
+constexpr Distance kDistances[] = {{"close", 1000}, {"mid", 350}, {"far", 70}};
+
+/// A kind of picture: 1 sample with and without the filter, or sample layers.
+struct Kind {
+  const char* name;
+  int samples;
+  bool filter;
+};
+constexpr Kind kKinds[] = {
+    {"center", 1, false}, {"filter", 1, true}, {"msaa2", 2, false}, {"msaa4", 4, false}, {"msaa8", 8, false}};
+
+/// 127k strands of long wavy hair, made once and kept.
+std::shared_ptr<const HairMesh> bench_mesh() {
+  static const auto mesh = std::make_shared<const HairMesh>(make_hair_mesh({.style = HairMeshStyle::kWavy}));
+  return mesh;
+}
+
+/// The mesh from the front, so far away that it is `pixels` tall at 1080 rows.
+Scene scene_at(float pixels) {
+  Scene scene;
+  scene.grooms.emplace_back().hair_mesh = bench_mesh();
+  scene.settings.method = Method::kSwr, scene.settings.samples = 1;
+  scene.settings.width = 1920, scene.settings.height = 1080;
+  add_default_camera(scene);
+  add_default_lights(scene);
+  const Bounds box = bounds(expand(*bench_mesh(), {.points = 17, .share = 0.02f}));
+  Camera& camera = scene.camera;
+  const float distance = box.extent().y * 1080 / pixels / (2 * std::tan(0.5f * camera.fov_y));
+  const Vec3 back = normalize(camera.eye - camera.target);
+  camera.target = box.center(), camera.eye = box.center() + back * (distance + 0.5f * box.extent().z);
+  return scene;
+}
+
+/// Everything that frames of a scene share.
+struct Input {
+  Scene scene;
+  MeshTracer meshes;
+  std::vector<DeferredGroom> grooms;
+  LightRig rig;
+
+  explicit Input(float pixels)
+      : scene(scene_at(pixels)), meshes({}), grooms(prepare_deferred(scene)),
+        rig(prepare_lights(light_stand_in(scene), meshes)) {}
+
+  HairPicture hair(const RenderSettings& settings, HairWork* work = nullptr) const {
+    Scene with = scene;
+    with.settings = settings;
+    Stages stages({});
+    const FrameInputs inputs{with, meshes, rig, make_camera_view(scene.camera, settings.width, settings.height), {}};
+    return render_hair(inputs, grooms, {}, stages, work);
+  }
+};
+
+/// One input a distance, kept while cases use it.
+std::shared_ptr<const Input> input_at(float pixels) {
+  static std::map<float, std::weak_ptr<const Input>> kept;
+  if (auto known = kept[pixels].lock()) return known;
+  auto made = std::make_shared<const Input>(pixels);
+  kept[pixels] = made;
+  return made;
+}
+
+RenderSettings settings_of(const Input& in, const Kind& kind, bool lod) {
+  RenderSettings s = in.scene.settings;
+  s.samples = kind.samples, s.swr.filter = kind.filter, s.swr.lod = lod;
+  return s;
+}
+
+// The reference is the same frame, smaller, made by one thread without SIMD.
+std::string check_frame(const Input& in, RenderSettings settings) {
+  settings.width = 480, settings.height = 270;
+  const HairPicture fast = in.hair(settings);
+  const int threads = thread_count();
+  const std::string isa = active_isa();
+  set_thread_count(1);
+  set_isa(available_isas().back());
+  const HairPicture slow = in.hair(settings);
+  set_thread_count(threads);
+  set_isa(isa);
+  const bool same = fast.color.size() == slow.color.size() &&
+                    std::memcmp(fast.color.data(), slow.color.data(), fast.color.size() * sizeof(Vec4)) == 0;
+  return same ? "" : "not the bits of one thread without SIMD";
+}
+
+Workload frame_workload(const Distance& distance, const Kind& kind, bool lod) {
+  auto in = input_at(distance.pixels);
+  const RenderSettings settings = settings_of(*in, kind, lod);
+  return {.check = [in, settings] { return check_frame(*in, settings); }, .run = [in, settings] { in->hair(settings); }};
+}
+
+/// Share of the strands that level of detail draws.
+Workload strands_workload(const Distance& distance) {
+  auto in = input_at(distance.pixels);
+  return {.check = [] { return std::string(); },
+          .measure =
+              [in] {
+                HairWork work;
+                in->hair(settings_of(*in, kKinds[0], true), &work);
+                return static_cast<double>(work.strands) / static_cast<double>(strand_count(*bench_mesh()));
+              }};
+}
+
+Workload prepass_workload(const Distance& distance) {
+  auto in = input_at(distance.pixels);
+  return {.check = [] { return std::string(); },
+          .run = [in] { select_lod(in->scene, in->grooms, make_camera_view(in->scene.camera, 1920, 1080)); }};
+}
+
+using MakeStrands = void (*)(const BundleCage&, std::uint32_t, std::size_t, std::uint32_t, StrandGroup&);
+
+/// All strands of the mesh at full detail, made and forgotten.
+void make_all(const PreparedHairMesh& mesh, MakeStrands make) {
+  parallel_for(mesh.cages.size(), 1, [&](std::size_t begin, std::size_t end) {
+    thread_local StrandGroup group;
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::uint32_t s = 0; s < mesh.cages[b].bundle->strands; s += StrandGroup::kLanes)
+        make(mesh.cages[b], s, std::min<std::size_t>(StrandGroup::kLanes, mesh.cages[b].bundle->strands - s), kHairMeshPoints,
+             group);
+  });
+}
+
+std::string check_strands(const PreparedHairMesh& mesh) {
+  StrandGroup a, b;
+  for (const BundleCage& cage : mesh.cages) {
+    make_strands(cage, 0, 16, kHairMeshPoints, a), make_strands_scalar(cage, 0, 16, kHairMeshPoints, b);
+    const std::size_t bytes = kHairMeshPoints * StrandGroup::kLanes * sizeof(float);
+    for (const auto member : {&StrandGroup::x, &StrandGroup::y, &StrandGroup::z, &StrandGroup::tx, &StrandGroup::width})
+      if (std::memcmp((a.*member).data(), (b.*member).data(), bytes) != 0)
+        return "strands differ from those of the scalar target";
+  }
+  return "";
+}
+
+Workload strand_workload(MakeStrands make) {
+  auto mesh = std::make_shared<const PreparedHairMesh>(bench_mesh());
+  return {.check = [mesh] { return check_strands(*mesh); },
+          .run = [mesh, make] { make_all(*mesh, make); },
+          .items = static_cast<double>(strand_count(*bench_mesh())) * kHairMeshPoints};
+}
+
+}  // namespace
+
+void add_swr_cases(Suite& suite) {
+  suite.cases.push_back({"swr.strands.wide", "points_per_second", "1/s", [] { return strand_workload(make_strands); }});
+  suite.cases.push_back(
+      {"swr.strands.scalar", "points_per_second", "1/s", [] { return strand_workload(make_strands_scalar); }});
+  suite.ratios.push_back({"swr.strands.speedup", {"swr.strands.wide"}, {"swr.strands.scalar"}});
+  suite.ratios.push_back({"swr.strands.scaling", {"swr.strands.wide", 2}, {"swr.strands.wide", 1}});
+  for (const Distance& distance : kDistances) {
+    const std::string at = std::string("swr.") + distance.name + ".";
+    for (const Kind& kind : kKinds)
+      for (const bool lod : {false, true})
+        suite.cases.push_back({at + kind.name + (lod ? ".lod" : ".full"), "seconds_per_frame", "s",
+                               [distance, kind, lod] { return frame_workload(distance, kind, lod); }});
+    suite.cases.push_back({at + "prepass", "seconds_per_frame", "s", [distance] { return prepass_workload(distance); }});
+    suite.cases.push_back({at + "strands", "share", "1", [distance] { return strands_workload(distance); }});
+    suite.ratios.push_back({at + "lod_gain", {at + "filter.full"}, {at + "filter.lod"}});
+    suite.ratios.push_back({at + "filter_over_msaa2", {at + "filter.full"}, {at + "msaa2.full"}});
+    suite.ratios.push_back({at + "filter_over_msaa2.lod", {at + "filter.lod"}, {at + "msaa2.lod"}});
+    suite.ratios.push_back({at + "conservative_share", {at + "filter.full"}, {at + "center.full"}});
+    suite.ratios.push_back({at + "prepass_share", {at + "prepass"}, {at + "filter.lod"}});
+  }
+}
+
+}  // namespace pelage::bench
