@@ -67,12 +67,14 @@ Scene scene_at(float pixels) {
 struct Input {
   Scene scene;
   MeshTracer meshes;
-  std::vector<DeferredGroom> grooms;
+  DeferredGrooms grooms;
   LightRig rig;
 
   explicit Input(float pixels)
       : scene(scene_at(pixels)), meshes({}), grooms(prepare_deferred(scene)),
-        rig(prepare_lights(light_stand_in(scene), meshes)) {}
+        rig(prepare_lights(light_stand_in(scene), meshes)) {
+    grooms.materials = {scene, grooms.meshes, rig};
+  }
 
   HairPicture hair(const RenderSettings& settings, HairWork* work = nullptr) const {
     Scene with = scene;
@@ -135,7 +137,7 @@ Workload strands_workload(const Distance& distance) {
 Workload prepass_workload(const Distance& distance) {
   auto in = input_at(distance.pixels);
   return {.check = [] { return std::string(); },
-          .run = [in] { select_lod(in->scene, in->grooms, make_camera_view(in->scene.camera, 1920, 1080)); }};
+          .run = [in] { select_lod(in->scene, in->grooms.meshes, make_camera_view(in->scene.camera, 1920, 1080)); }};
 }
 
 using MakeStrands = void (*)(const BundleCage&, std::uint32_t, std::size_t, std::uint32_t, StrandGroup&);

@@ -182,7 +182,7 @@ struct SwrSettings {
   bool filter = true;            ///< reconnection filter, of pictures of one sample; false: samples as they are
   int radius = 5;                ///< r of §3.3.1, pixels, 1…15
   float s_parallel = 0.7f;       ///< s∥: σ∥ = r·s∥
-  float s_perpendicular = 0.3f;  ///< s⊥: σ⊥ = r·s⊥
+  float s_perpendicular = 0.2f;  ///< s⊥: σ⊥ = r·s⊥
   float sigma_color = 0.9f;      ///< σ_c of eq. 10, linear radiance
   float depth_tolerance = 0.1f;  ///< neighbors farther off than this share of the hair's depth do not count
   float connect_depth = 0.05f;   ///< share of the hair's depth from which a strand in front of the pixel's own is another one

@@ -3,32 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/check.h"
 #include "core/parallel.h"
 #include "filter/kernel_taps.h"
 #include "filter/matte.h"
+#include "filter/reconnect_taps.h"
 #include "frame/camera_view.h"
 
 namespace pelage {
 namespace {
 
-/// A neighbor within reach of the kernel, for one direction of the strand.
-struct Tap {
-  std::int32_t offset;  // in pixels of the padded picture
-  float along;          // d∥, pixels: along the strand, to the right or straight down
-  float weight;         // spatial term of eq. 10
-  float in_strip;       // 1 within the strip in which hits are counted, else 0
-};
-
-/// Taps by direction. Those of little weight are left out, unless they lie in the strip.
+/// Taps by direction: the neighbors within reach of the kernel, and those in the strip in which hits are counted.
 class TapTable {
  public:
-  TapTable(const SwrSettings& s, std::size_t stride) : first_(DirectionCells::kDirections + 1) {
+  TapTable(const SwrSettings& s, std::size_t stride) : first_(1), first_in_strip_(1) {
     const float r = static_cast<float>(s.radius), sigma_along = r * s.s_parallel, sigma_across = r * s.s_perpendicular;
     for (int cell = 0; cell < DirectionCells::kDirections; ++cell) {
-      first_[static_cast<std::size_t>(cell)] = taps_.size();
       const Vec2 t = DirectionCells::middle(cell);
       for (int y = -s.radius; y <= s.radius; ++y)
         for (int x = -s.radius; x <= s.radius; ++x) {
@@ -36,22 +29,35 @@ class TapTable {
           const float along = dot(d, t), across = length(d - t * along);
           const float weight =
               std::exp(-along * along / (sigma_along * sigma_along) - across * across / (sigma_across * sigma_across));
-          const bool strip = across <= s.strip;
-          if (weight < kLeastReconnectWeight && !strip) continue;
-          const float counted = weight < kLeastReconnectWeight ? 0 : weight;
-          taps_.push_back({y * static_cast<std::int32_t>(stride) + x, along, counted, strip ? 1.f : 0.f});
+          const std::int32_t offset = y * static_cast<std::int32_t>(stride) + x;
+          if (across <= s.strip) strip_.push_back({offset, along});
+          if (weight >= kLeastReconnectWeight) put(offset, along, weight);
         }
+      while (offset_.size() % ReconnectTaps::kLanes != 0) put(0, 0, 0);  // whole lanes; they weigh nothing
+      first_.push_back(offset_.size()), first_in_strip_.push_back(strip_.size());
     }
-    first_.back() = taps_.size();
   }
-  std::span<const Tap> of(int cell) const {
+  ReconnectTaps of(int cell) const {
     const auto c = static_cast<std::size_t>(cell);
-    return std::span(taps_).subspan(first_[c], first_[c + 1] - first_[c]);
+    return {first_[c + 1] - first_[c], &offset_[first_[c]], &along_[first_[c]], &weight_[first_[c]]};
+  }
+  struct StripTap {
+    std::int32_t offset;  // in pixels of the padded picture
+    float along;          // d∥, pixels: along the strand, to the right or straight down
+  };
+  std::span<const StripTap> strip(int cell) const {
+    const auto c = static_cast<std::size_t>(cell);
+    return std::span(strip_).subspan(first_in_strip_[c], first_in_strip_[c + 1] - first_in_strip_[c]);
   }
 
  private:
-  std::vector<std::size_t> first_;
-  std::vector<Tap> taps_;
+  void put(std::int32_t offset, float along, float weight) {
+    offset_.push_back(offset), along_.push_back(along), weight_.push_back(weight);
+  }
+  std::vector<std::size_t> first_, first_in_strip_;
+  std::vector<std::int32_t> offset_;
+  std::vector<float> along_, weight_;
+  std::vector<StripTap> strip_;
 };
 
 constexpr float kNoDepth = 1e30f;  // of pixels without a hit: no neighbor is as deep
@@ -60,7 +66,7 @@ constexpr float kNoDepth = 1e30f;  // of pixels without a hit: no neighbor is as
 struct Padded {
   int reach;
   std::size_t stride;
-  Buffer<Vec4> color;             // of the strand that the center shows; w: 1 there, 0 where there is none
+  Buffer<float> r, g, b;          // color of the strand that the center shows
   Buffer<float> center, touched;  // depth of either layer in units of the hair's depth range, or kNoDepth
 
   std::size_t index(int x, int y) const {
@@ -73,14 +79,15 @@ Padded pad_layers(const DeferredBuffer& buffer, const Radiance& radiance, int re
   Padded p;
   p.reach = reach, p.stride = static_cast<std::size_t>(width + 2 * reach);
   const std::size_t size = p.stride * static_cast<std::size_t>(height + 2 * reach);
-  p.color.resize(size), p.center.resize(size), p.touched.resize(size);
+  for (Buffer<float>* layer : {&p.r, &p.g, &p.b, &p.center, &p.touched}) layer->resize(size);
   const auto depth_of = [](PixelKey key) {
     return key == kEmptyPixel ? kNoDepth : static_cast<float>(deferred::depth_level(key)) * (1 / kernel::kRasterDepthLevels);
   };
   parallel_for(static_cast<std::size_t>(height + 2 * reach), 16, [&](std::size_t first, std::size_t last) {
-    std::fill(&p.color[first * p.stride], &p.color[first * p.stride] + (last - first) * p.stride, Vec4(0, 0, 0, 0));
-    std::fill(&p.center[first * p.stride], &p.center[first * p.stride] + (last - first) * p.stride, kNoDepth);
-    std::fill(&p.touched[first * p.stride], &p.touched[first * p.stride] + (last - first) * p.stride, kNoDepth);
+    const auto clear = [&](Buffer<float>& layer, float value) {
+      std::fill(&layer[first * p.stride], &layer[first * p.stride] + (last - first) * p.stride, value);
+    };
+    clear(p.r, 0), clear(p.g, 0), clear(p.b, 0), clear(p.center, kNoDepth), clear(p.touched, kNoDepth);
     for (int y = static_cast<int>(first) - reach; y < static_cast<int>(last) - reach; ++y) {
       if (y < 0 || y >= height) continue;
       std::size_t q = static_cast<std::size_t>(y) * static_cast<std::size_t>(width), to = p.index(0, y);
@@ -89,7 +96,7 @@ Padded pad_layers(const DeferredBuffer& buffer, const Radiance& radiance, int re
         p.touched[to] = depth_of(buffer.conservative[q]), p.center[to] = depth_of(buffer.center[q]);
         if (const std::uint32_t i = radiance.index[q]; i != Radiance::kNone) {
           const Vec3 c = radiance.color[i];
-          p.color[to] = {c.x, c.y, c.z, 1};
+          p.r[to] = c.x, p.g[to] = c.y, p.b[to] = c.z;
         }
       }
     }
@@ -109,9 +116,6 @@ struct Gathered {
   Vec4 sum;                 // weighted colors; w: their weights
   float hits = 0, all = 0;  // center and conservative hits in the strip
 };
-
-/// e^−x for x ≥ 0, too large by 0.028 at most (at x = 3); cheap, and the same on every machine.
-float falling(float x) { return 1 / (1 + x * (1 + x * (0.5f + x * (1.f / 6)))); }
 
 class Reconnecter {
  public:
@@ -155,26 +159,19 @@ class Reconnecter {
     return {cell, depth, sign * per_pixel / (buffer_.range.far_end - buffer_.range.near_end)};
   }
 
-  /// `color`: that of the pixel, for the term of color; null for none. `nearby`: hits count only where they are as deep.
-  Gathered gather(const ScreenStrand& s, std::size_t middle, const Vec4* color, bool nearby) const {
+  /// compare: whether the term of color counts. nearby: whether hits count only where they are as deep.
+  Gathered gather(const ScreenStrand& s, std::size_t middle, bool compare, bool nearby) const {
     Gathered g;
     const float tolerance = settings_.depth_tolerance;
-    for (const Tap& tap : taps_.of(s.cell)) {
+    for (const TapTable::StripTap& tap : taps_.strip(s.cell)) {
       const std::size_t q = middle + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(tap.offset));
-      const float expected = s.depth + s.slope * tap.along;
-      const float center = padded_.center[q], touched = padded_.touched[q];
-      const bool alike = std::fabs(center - expected) <= tolerance;
-      g.hits += center != kNoDepth && (alike || !nearby) ? tap.in_strip : 0;
-      g.all += touched != kNoDepth && (!nearby || std::fabs(touched - expected) <= tolerance) ? tap.in_strip : 0;
-      if (!alike || !(tap.weight > 0)) continue;
-      const Vec4 c = padded_.color[q];
-      float w = tap.weight;
-      if (color) {
-        const float r = c.x - color->x, gr = c.y - color->y, b = c.z - color->z;
-        w *= falling((r * r + gr * gr + b * b) * color_scale_);
-      }
-      g.sum.x += c.x * w, g.sum.y += c.y * w, g.sum.z += c.z * w, g.sum.w += w;
+      const float expected = s.depth + s.slope * tap.along, center = padded_.center[q], touched = padded_.touched[q];
+      const bool hit = center != kNoDepth, touch = touched != kNoDepth;
+      g.hits += hit && (!nearby || std::fabs(center - expected) <= tolerance) ? 1.f : 0.f;
+      g.all += touch && (!nearby || std::fabs(touched - expected) <= tolerance) ? 1.f : 0.f;
     }
+    const ReconnectPixels at{&padded_.center[middle], &padded_.r[middle], &padded_.g[middle], &padded_.b[middle]};
+    g.sum = sum_taps(taps_.of(s.cell), at, {s.depth, s.slope, tolerance, compare ? color_scale_ : 0.f});
     return g;
   }
 
@@ -190,15 +187,15 @@ class Reconnecter {
 
   Vec4 centered(PixelKey key, int x, int y, std::size_t at) const {
     const std::size_t middle = padded_.index(x, y);
-    const Gathered g = gather(strand(key, x, y), middle, &padded_.color[middle], false);
+    const Gathered g = gather(strand(key, x, y), middle, true, false);
     return premultiplied(g, opacity(g, at));
   }
   Vec4 promoted(PixelKey key, int x, int y, std::size_t at) const {
-    const Gathered g = gather(strand(key, x, y), padded_.index(x, y), nullptr, false);
+    const Gathered g = gather(strand(key, x, y), padded_.index(x, y), false, false);
     return premultiplied(g, opacity(g, at));
   }
   Vec4 in_front(PixelKey key, int x, int y) const {
-    const Gathered g = gather(strand(key, x, y), padded_.index(x, y), nullptr, true);
+    const Gathered g = gather(strand(key, x, y), padded_.index(x, y), false, true);
     return premultiplied(g, g.all > 0 ? std::min(g.hits / g.all, 1.f) : 0.f);
   }
 

@@ -212,7 +212,7 @@ TEST(Reconnect, TakesOpacityFromCoverageWhereThereIsOne) {
   for (int x = 0; x < 32; ++x) EXPECT_EQ(at(picture, x, 4).w, 0.25f);
 }
 
-TEST(Reconnect, SameBitsForAnyNumberOfThreads) {
+TEST(Reconnect, SameBitsForAnyThreadsAndInstructionSet) {
   Canvas canvas(61, 47);
   Rng rng(4, 1);
   for (int i = 0; i < 3000; ++i)
@@ -223,6 +223,11 @@ TEST(Reconnect, SameBitsForAnyNumberOfThreads) {
   set_thread_count(3);
   const HairPicture three = canvas.filter();
   set_thread_count(0);
+  for (const std::string& isa : available_isas()) {
+    set_isa(isa);
+    EXPECT_EQ(std::memcmp(one.color.data(), canvas.filter().color.data(), one.color.size() * sizeof(Vec4)), 0) << isa;
+  }
+  set_isa("");
   EXPECT_EQ(std::memcmp(one.color.data(), three.color.data(), one.color.size() * sizeof(Vec4)), 0);
   for (const Vec4 p : one.color) EXPECT_TRUE(std::isfinite(p.x) && p.w >= 0 && p.w <= 1);
 }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/buffer.h"
@@ -18,11 +19,24 @@
 namespace pelage {
 
 struct PreparedHairMesh;  // groom/hairmesh/prepared.h
+struct ShadeConstants;    // shade/batch.h
 
 /// The grooms of a scene that are hair meshes, ready to be drawn: made once, whatever the camera does.
 struct DeferredGroom {
   std::uint32_t groom = 0;  ///< its number in the scene
   std::shared_ptr<const PreparedHairMesh> mesh;
+};
+
+/// What shading of a scene's grooms under its lights shares from frame to frame: tables of the materials. Refers to the rig.
+class DeferredMaterials {
+ public:
+  DeferredMaterials() = default;
+  DeferredMaterials(const Scene& scene, std::span<const DeferredGroom> grooms, const LightRig& rig);
+  /// [grooms]
+  const std::vector<ShadeConstants>& constants() const { return *constants_; }
+
+ private:
+  std::shared_ptr<const std::vector<ShadeConstants>> constants_;
 };
 
 /// A bundle that is drawn.

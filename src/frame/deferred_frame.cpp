@@ -29,19 +29,19 @@ std::uint64_t bytes_of(const DeferredBuffer& b) { return b.center.bytes() + b.co
 
 }  // namespace
 
-std::vector<DeferredGroom> prepare_deferred(const Scene& scene) {
+DeferredGrooms prepare_deferred(const Scene& scene) {
   constexpr std::size_t kMostGrooms = std::size_t{kUvCells} * kUvCells;
   if (scene.grooms.size() > kMostGrooms)
     throw Error("scene", "grooms", fmt::format("{} of them", scene.grooms.size()),
                 fmt::format("method swr draws {} at most", kMostGrooms));
-  std::vector<DeferredGroom> grooms;
+  DeferredGrooms grooms;
   for (std::uint32_t g = 0; g < scene.grooms.size(); ++g) {
     const GroomInstance& groom = scene.grooms[g];
     if (!groom.hair_mesh)
       throw Error("scene", groom.name, "method swr draws hair meshes, and this groom is none",
                   "make one from it with `pelage fit hairmesh`, or use another method");
     validate(*groom.hair_mesh, groom.name);
-    grooms.push_back({g, std::make_shared<const PreparedHairMesh>(groom.hair_mesh)});
+    grooms.meshes.push_back({g, std::make_shared<const PreparedHairMesh>(groom.hair_mesh)});
   }
   return grooms;
 }
@@ -59,7 +59,7 @@ Scene light_stand_in(const Scene& scene) {
   return stand_in;
 }
 
-HairPicture render_hair(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, const Buffer<float>& opaque_depth,
+HairPicture render_hair(const FrameInputs& inputs, const DeferredGrooms& grooms, const Buffer<float>& opaque_depth,
                         Stages& stages, HairWork* work) {
   const Scene& scene = inputs.scene;
   const RenderSettings& settings = scene.settings;
@@ -67,22 +67,22 @@ HairPicture render_hair(const FrameInputs& inputs, std::span<const DeferredGroom
 
   LodSelection selection;
   stages.run("lod", "strands", [&](const Progress&) {
-    selection = select_lod(scene, grooms, inputs.view);
+    selection = select_lod(scene, grooms.meshes, inputs.view);
     return StageWork{selection.strands, selection.bundles.size() * sizeof(BundleDraw)};
   });
 
   DeferredBuffer buffer;
   stages.run("raster", "points", [&](const Progress& progress) {
-    place_deferred(scene, grooms, selection, inputs.view, buffer);
+    place_deferred(scene, grooms.meshes, selection, inputs.view, buffer);
     const DeferredLayers layers{.center = !sampled, .conservative = filtered, .samples = sampled ? settings.samples : 0};
-    raster_hair_meshes(scene, grooms, selection, inputs.view, layers, opaque_depth, buffer, progress);
+    raster_hair_meshes(scene, grooms.meshes, selection, inputs.view, layers, opaque_depth, buffer, progress);
     return StageWork{selection.points, bytes_of(buffer)};
   });
 
   Radiance radiance;
   stages.run("shade", "evaluations", [&](const Progress&) {
     const auto positions = sample_positions(settings.samples);
-    radiance = shade_deferred(scene, grooms, selection, buffer, inputs.rig,
+    radiance = shade_deferred(scene, grooms.meshes, selection, buffer, grooms.materials,
                               std::span(positions).first(static_cast<std::size_t>(settings.samples)));
     return StageWork{radiance.color.size(), radiance.index.bytes() + radiance.color.bytes()};
   });
@@ -96,7 +96,7 @@ HairPicture render_hair(const FrameInputs& inputs, std::span<const DeferredGroom
   return hair;
 }
 
-Image render_deferred(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, Stages& stages) {
+Image render_deferred(const FrameInputs& inputs, const DeferredGrooms& grooms, Stages& stages) {
   const Scene& scene = inputs.scene;
   const RenderSettings& settings = scene.settings;
   OpaqueLayer opaque;

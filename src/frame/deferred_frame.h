@@ -4,7 +4,6 @@
 #include <pelage/image.h>
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "frame/deferred.h"
@@ -12,8 +11,15 @@
 
 namespace pelage {
 
-/// The grooms of `scene`, ready to be drawn. Throws Error where one is no hair mesh, or there are more than a pixel can tell apart.
-std::vector<DeferredGroom> prepare_deferred(const Scene& scene);
+/// What all frames of a scene share.
+struct DeferredGrooms {
+  std::vector<DeferredGroom> meshes;
+  DeferredMaterials materials;  ///< once there are lights
+};
+
+/// The grooms of `scene`, ready to be drawn, without materials yet. Throws Error where one is no hair mesh, or there are more than
+/// a pixel can tell apart.
+DeferredGrooms prepare_deferred(const Scene& scene);
 
 /// `scene` with strands in place of its hair meshes that suffice for maps of light: a few thousand of each, widened for the rest.
 Scene light_stand_in(const Scene& scene);
@@ -25,10 +31,10 @@ struct HairWork {
 
 /// The hair of the scene, without its background: lod, raster, shade and filter. opaque_depth: of the whole picture, camera z,
 /// [height · width · samples], or empty.
-HairPicture render_hair(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, const Buffer<float>& opaque_depth,
+HairPicture render_hair(const FrameInputs& inputs, const DeferredGrooms& grooms, const Buffer<float>& opaque_depth,
                         Stages& stages, HairWork* work = nullptr);
 
 /// The scene, linear: R, G, B, A, premultiplied.
-Image render_deferred(const FrameInputs& inputs, std::span<const DeferredGroom> grooms, Stages& stages);
+Image render_deferred(const FrameInputs& inputs, const DeferredGrooms& grooms, Stages& stages);
 
 }  // namespace pelage

@@ -5,11 +5,11 @@
 
 namespace pelage {
 
-std::vector<DeferredGroom> prepare_deferred(const Scene&) {
+DeferredGrooms prepare_deferred(const Scene&) {
   throw Error("settings", "method", "this build of Pelage has no hair meshes, which method swr draws",
               "build it with -D PELAGE_HAIRMESH=ON, or use another method");
 }
 Scene light_stand_in(const Scene& scene) { return scene; }
-Image render_deferred(const FrameInputs&, std::span<const DeferredGroom>, Stages&) { return {}; }
+Image render_deferred(const FrameInputs&, const DeferredGrooms&, Stages&) { return {}; }
 
 }  // namespace pelage

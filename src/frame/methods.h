@@ -5,9 +5,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
-#include "frame/deferred.h"
+#include "frame/deferred_frame.h"
 #include "frame/one_frame.h"
 
 namespace pelage {
@@ -23,7 +22,7 @@ struct MethodState {
 
   std::unique_ptr<TaaHistory> history;  ///< null before the first picture
   std::uint32_t next_frame = 0;         ///< place in the sequence of jitters
-  std::vector<DeferredGroom> grooms;    ///< of method swr, prepared once
+  DeferredGrooms grooms;                ///< of method swr, prepared once
 };
 
 /// The same picture for further work and for a display, as in RenderResult.

@@ -135,7 +135,9 @@ RenderResult PictureSequence::next(const Camera& camera, const Progress& progres
   const bool beauty = settings.view == View::kBeauty;
   if (beauty && !state_->rig)
     stages.run("light", "maps", [&](const Progress&) {
-      state_->rig = prepare_lights(draws_hair_meshes(settings) ? light_stand_in(scene) : scene, state_->meshes);
+      const bool meshes = draws_hair_meshes(settings);
+      state_->rig = prepare_lights(meshes ? light_stand_in(scene) : scene, state_->meshes);
+      if (meshes) state_->method.grooms.materials = {scene, state_->method.grooms.meshes, *state_->rig};
       return StageWork{state_->rig->lights.size(), resident_bytes(*state_->rig)};
     });
 

@@ -140,8 +140,16 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
 
 }  // namespace
 
+DeferredMaterials::DeferredMaterials(const Scene& scene, std::span<const DeferredGroom> grooms, const LightRig& rig) {
+  std::vector<ShadeConstants> constants;
+  for (const DeferredGroom& groom : grooms)
+    constants.push_back(shade_constants(scene.grooms[groom.groom].material, scene.settings.dual_scattering, rig));
+  constants_ = std::make_shared<const std::vector<ShadeConstants>>(std::move(constants));
+}
+
 Radiance shade_deferred(const Scene& scene, std::span<const DeferredGroom> grooms, const LodSelection& selection,
-                        const DeferredBuffer& buffer, const LightRig& rig, std::span<const Vec2> sample_positions) {
+                        const DeferredBuffer& buffer, const DeferredMaterials& materials,
+                        std::span<const Vec2> sample_positions) {
   const bool sampled = buffer.samples > 1;
   const Buffer<PixelKey>& keys = sampled ? buffer.sample_keys : buffer.center;
   PELAGE_CHECK_EQ(sample_positions.size(), static_cast<std::size_t>(sampled ? buffer.samples : 1));
@@ -150,15 +158,13 @@ Radiance shade_deferred(const Scene& scene, std::span<const DeferredGroom> groom
   radiance.index = std::move(list.index);
   radiance.color.resize(list.first.size());
   Gather gather{scene, grooms, buffer, sample_positions, keys, cell_facts(scene, grooms, selection), {}};
-  std::vector<ShadeConstants> constants;
   for (const DeferredGroom& groom : grooms) {
     const HairMaterial& material = scene.grooms[groom.groom].material;
-    constants.push_back(shade_constants(material, scene.settings.dual_scattering, rig));
     gather.absorption.push_back(fiber_absorption(material, material.color));
   }
   parallel_for(list.first.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
     ShadeBatch batch;
-    shade_block(gather, constants, {list.first.data() + begin, end - begin}, batch, radiance.color.data() + begin);
+    shade_block(gather, materials.constants(), {list.first.data() + begin, end - begin}, batch, radiance.color.data() + begin);
   });
   return radiance;
 }

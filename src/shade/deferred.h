@@ -16,6 +16,7 @@ namespace pelage {
 /// grooms, selection: those that the buffer was made with; sample_positions: places of the samples inside a pixel (of `center`:
 /// one, the middle). Bits do not depend on threads or instruction set. O(pixels · samples + evaluations · lights).
 Radiance shade_deferred(const Scene& scene, std::span<const DeferredGroom> grooms, const LodSelection& selection,
-                        const DeferredBuffer& buffer, const LightRig& rig, std::span<const Vec2> sample_positions);
+                        const DeferredBuffer& buffer, const DeferredMaterials& materials,
+                        std::span<const Vec2> sample_positions);
 
 }  // namespace pelage

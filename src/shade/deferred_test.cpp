@@ -42,7 +42,7 @@ Shaded shade(const Scene& scene, const LightRig& rig, int size = 96) {
   DeferredBuffer buffer;
   place_deferred(scene, grooms, selection, view, buffer);
   raster_hair_meshes(scene, grooms, selection, view, {}, {}, buffer);
-  Shaded s{shade_deferred(scene, grooms, selection, buffer, rig, kPixelCenter)};
+  Shaded s{shade_deferred(scene, grooms, selection, buffer, {scene, grooms, rig}, kPixelCenter)};
   for (const Vec3 c : s.radiance.color) s.luminance += kernel::v_luminance(c);
   s.luminance /= static_cast<double>(s.radiance.color.size());
   return s;
@@ -111,7 +111,7 @@ TEST(DeferredShade, MapsColorHairByItsPlace) {
   DeferredBuffer buffer;
   place_deferred(scene, grooms, selection, view, buffer);
   raster_hair_meshes(scene, grooms, selection, view, {}, {}, buffer);
-  const Radiance r = shade_deferred(scene, grooms, selection, buffer, rig, kPixelCenter);
+  const Radiance r = shade_deferred(scene, grooms, selection, buffer, {scene, grooms, rig}, kPixelCenter);
   int red = 0, blue = 0;
   for (std::size_t p = 0; p < r.index.size(); ++p) {
     if (r.index[p] == Radiance::kNone) continue;

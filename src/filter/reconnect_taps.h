@@ -1,0 +1,35 @@
+// The innermost loop of the reconnection filter: a pixel's neighbors, many at a time.
+#pragma once
+
+#include <pelage/vec.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace pelage {
+
+/// Neighbors under the kernel for one direction of the strand; `count` is a multiple of kLanes.
+struct ReconnectTaps {
+  static constexpr std::size_t kLanes = 16;
+  std::size_t count;
+  const std::int32_t* offset;  ///< in pixels of the padded picture
+  const float* along;          ///< d∥, pixels: along the strand, to the right or straight down
+  const float* weight;         ///< spatial term of Lipp 2026, eq. 10
+};
+
+/// Where the pixel in the middle stands in the layers of a padded picture: depth of its center, and color.
+struct ReconnectPixels {
+  const float *depth, *r, *g, *b;
+};
+
+/// The strand that is gathered for: neighbors count within `tolerance` of depth + slope·d∥; color_scale: 1/σ_c², 0 without that
+/// term.
+struct ReconnectStrand {
+  float depth, slope, tolerance, color_scale;
+};
+
+/// Σ w·(r, g, b, 1) over the neighbors that count: eq. 10. e^−x of the color's term is 1/(1 + x + x²/2 + x³/6), too large by
+/// 0.028 at most, at x = 3. Sums are made in kLanes parts, so every instruction set gives the same bits.
+Vec4 sum_taps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand);
+
+}  // namespace pelage
