@@ -15,6 +15,8 @@ namespace {
 
 constexpr float kStep = 0.003f;
 constexpr float kUnderHair = 0.004f;  // metres between skin and cage: quads cut the curve of the skull by 1 to 2 mm
+constexpr float kBeside = 0.015f;     // metres from the parting at which its flow leads to one side for sure
+constexpr float kLoose = 0.005f;      // metres above its layer in which hair of the crown is left alone
 constexpr float kSmoothed = 12;       // passes over a path
 constexpr Vec3 kTie{0, 0.052f, -0.124f};
 
@@ -53,7 +55,7 @@ class Faller {
         mix(f_.cut_front, f_.cut_back, smoothstep(0.15f, 0.85f, c_.along)) + f_.ragged * noise3(c_.root * 60.f, 51u);
     for (float s = kStep; s < f_.length && p.y > cut; s += kStep) {
       direction = normalize(direction + pull(p, s) * (kStep / f_.bend_length));
-      Vec3 next = clear_of_head(p + direction * kStep, clearance(s));
+      Vec3 next = laid(p + direction * kStep, clearance(s));
       next = push_out_of_face(next, smoothstep(0.f, 0.04f, s));
       direction = normalize(next - p);
       p = p + direction * kStep;
@@ -68,21 +70,33 @@ class Faller {
 
  private:
   Vec3 first_direction() const {
-    const Vec3 beside = c_.root + Vec3(0.004f * static_cast<float>(c_.side), 0, 0);
+    if (c_.side == 0 && c_.down == 0 && c_.along < 0.45f)
+      return normalize(c_.normal * f_.lift + Vec3(0, -0.3f, -1) * (1 - f_.lift));
+    const Vec3 beside = c_.root + Vec3(kBeside * static_cast<float>(c_.side), 0, 0);
     const Vec3 flow = normalize(parting_flow(beside, c_.normal, f_.parting_x));
     const float lift = c_.side != 0 ? 0.5f * f_.lift : f_.lift;
     return normalize(c_.normal * lift + flow * (1 - lift));
   }
+  /// Not below the layer that hair lies in, and over the crown not far above it: the skull curves away under it.
+  Vec3 laid(Vec3 p, float layer) const {
+    const DistanceSample skin = sample_distance(mannequin().grid, p);
+    const float above = skin.distance - layer, too_far = std::max(above - kLoose, 0.f);
+    const float down = above < 0 ? above : too_far * f_.cling * smoothstep(0.02f, 0.07f, p.y);
+    return p - normalize(skin.gradient) * down;
+  }
   Vec3 pull(Vec3 p, float s) const {
     Vec3 sum(0, -smoothstep(0.f, f_.bend_length, s), 0);
     sum += Vec3(0, 0, shoulder_pull(p, c_.behind) * 1.4f - sweep_back(p) * 1.6f);
+    // Hair in front of the shoulders leaves the throat free.
+    const float throat = smoothstep(0.10f, 0.06f, std::abs(p.x)) * smoothstep(0.01f, -0.05f, p.y);
+    if (!c_.behind) sum.x += std::copysign(2.5f * throat, p.x);
     const Vec3 out = normalize(Vec3(p.x, 0, p.z + 0.02f));
     sum += out * (f_.spread * smoothstep(0.10f, 0.0f, p.y) * smoothstep(-0.2f, 0.f, p.y));
     return sum - out * (f_.tuck * smoothstep(-0.045f, -0.10f, p.y));
   }
   /// What grows higher lies further out.
   float clearance(float s) const {
-    const float layer = f_.volume * (1 - c_.down) * smoothstep(0.01f, 0.13f, s);
+    const float layer = f_.volume * mix(1, 0.2f, c_.down) * smoothstep(0.01f, 0.13f, s);
     return std::min(0.5f * s, kUnderHair + layer);
   }
 

@@ -17,6 +17,7 @@ struct Fall {
   float length = 0.3f;        ///< metres, longest
   float cut_front = -1;       ///< metres, y below which hair of the forehead is cut …
   float cut_back = -1;        ///< … and that of the nape
+  float cling = 0.25f;        ///< 0…1: share of its height above where it belongs that hair of the crown loses a step
   float ragged = 0;           ///< metres by which the cut goes up and down
   float tuck = 0;             ///< 0…1: how far tips turn in below the chin
   float spread = 0;           ///< 0…1: how far hair stands away from the head as it falls

@@ -94,6 +94,7 @@ Recipe curls() {
             .length = 0.34f,
             .cut_front = -0.120f,
             .cut_back = -0.150f,
+            .cling = 0.10f,
             .ragged = 0.035f,
             .tuck = 0.35f,
             .spread = 0.28f};

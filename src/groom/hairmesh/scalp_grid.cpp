@@ -13,8 +13,9 @@ namespace {
 constexpr float kPi = 3.14159265f;
 constexpr float kTemple = 0.72f, kNapeCorner = 2.42f;  // azimuths of a patch's corners on the hairline
 constexpr float kAboveHairline = 0.003f;               // metres: the rim of the grid is chords of a curve
+constexpr float kRootLift = 0.0015f;                   // metres: so that quads cut the skin instead of lying below it
 constexpr float kWhorlX = -0.010f;                     // where the middle line passes over the crown
-constexpr float kCrown = 0.45f;                        // how far along
+constexpr float kCrown = 0.40f;                        // how far along
 
 /// Skin on the hairline at a signed azimuth, positive to the left.
 Vec3 hairline(float azimuth) {
@@ -28,7 +29,6 @@ class GridMaker {
     // The forehead's end of the middle line: where the hairline has its x.
     front_azimuth_ = std::asin(s_.parting_x / 0.087f);
     crown_row_ = static_cast<int>(std::lround(kCrown * static_cast<float>(s_.rows)));
-    divide_row_ = static_cast<int>(std::lround(0.5f * static_cast<float>(s_.rows)));
     for (const int side : {1, -1})
       for (int i = 0; i < s_.rows; ++i)
         for (int j = 0; j < s_.across; ++j) add_quad(side, i, j);
@@ -61,9 +61,9 @@ class GridMaker {
   }
 
   std::uint32_t column(int side, int i, int j, bool behind, int quad) {
-    const bool in_parting = s_.parted && j == 0 && i < crown_row_;
+    const bool doubled = s_.divided && i == crown_row_;
+    const bool in_parting = s_.parted && j == 0 && (i < crown_row_ || (doubled && !behind));
     const int own_side = in_parting || j > 0 ? side : 0;
-    const bool doubled = s_.divided && i == divide_row_;
     const auto key = std::tuple(i, j, own_side, doubled && behind, s_.separate ? quad : 0);
     const auto [found, is_new] = columns_.try_emplace(key, static_cast<std::uint32_t>(grid.columns.size()));
     if (is_new) {
@@ -74,13 +74,14 @@ class GridMaker {
       c.behind = behind;
       c.root = place(side, c.along, c.down);
       c.normal = head_normal(c.root);
+      if (c.down < 1) c.root += c.normal * kRootLift;
       grid.columns.push_back(c);
     }
     return found->second;
   }
 
   void add_quad(int side, int i, int j) {
-    const bool behind = i >= divide_row_;
+    const bool behind = i >= crown_row_;
     const int quad = static_cast<int>(grid.quads.size());
     const auto corner = [&](int di, int dj) { return column(side, i + di, j + dj, behind, quad); };
     grid.quads.push_back({corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)});
@@ -88,7 +89,7 @@ class GridMaker {
 
   ScalpGridSettings s_;
   float front_azimuth_ = 0;
-  int crown_row_ = 0, divide_row_ = 0;
+  int crown_row_ = 0;
   std::map<std::tuple<int, int, int, bool, int>, std::uint32_t> columns_;
 };
 

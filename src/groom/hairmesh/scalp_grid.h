@@ -10,17 +10,17 @@
 namespace pelage::groom {
 
 struct ScalpGridSettings {
-  int rows = 8;           ///< quads from the forehead over the crown to the nape
-  int across = 4;         ///< quads from the middle to the hairline, on either side
-  float parting_x = 0;    ///< metres left of the middle: where the middle line begins at the forehead
-  bool parted = false;    ///< columns of the middle are doubled from the forehead to the crown
-  bool divided = false;   ///< columns over the ears are doubled: hair in front of the shoulders parts from that behind them
+  int rows = 8;          ///< quads from the forehead over the crown to the nape
+  int across = 4;        ///< quads from the middle to the hairline, on either side
+  float parting_x = 0;   ///< metres left of the middle: where the middle line begins at the forehead
+  bool parted = false;   ///< columns of the middle are doubled from the forehead to the crown
+  bool divided = false;  ///< columns from crown to ears are doubled: hair in front of the shoulders parts from that behind them
   bool separate = false;  ///< no bundle shares columns with another
 };
 
 /// Root of a column.
 struct ScalpColumn {
-  Vec3 root, normal;    ///< on the skin
+  Vec3 root, normal;    ///< on the skin, or 1.5 mm above it within the scalp
   float along = 0;      ///< 0 forehead … 1 nape
   float down = 0;       ///< 0 middle … 1 hairline
   int side = 0;         ///< of a parting: −1 right, 1 left (positive x), 0 neither
