@@ -5,6 +5,7 @@
 #include <pelage/error.h>
 #include <pelage/grow.h>
 #include <pelage/hair_mesh.h>
+#include <pelage/hair_mesh_fit.h>
 #include <pelage/hair_mesh_styles.h>
 #include <pelage/image.h>
 #include <pelage/io.h>

@@ -1,5 +1,6 @@
 // In place of the whole sub-module where a build leaves it out: every entry point says how to have it.
 #include <pelage/error.h>
+#include <pelage/hair_mesh_fit.h>
 #include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
 
@@ -28,6 +29,7 @@ const std::vector<std::string>& hair_mesh_style_names() {
 HairMeshStyle hair_mesh_style_from_name(const std::string&) { left_out("hair mesh"); }
 HairMesh make_hair_mesh(const HairMeshSettings&, const Progress&) { left_out("hair mesh"); }
 void bake_occlusion(HairMesh&, const Progress&) { left_out("hair mesh"); }
+HairMesh fit_hair_mesh(const StrandSet&, const HairMeshFitSettings&, HairMeshFitReport*, const Progress&) { left_out("hair mesh"); }
 std::size_t resident_bytes(const HairMesh&) { left_out("hair mesh"); }
 
 }  // namespace pelage
