@@ -54,8 +54,9 @@ void print_json(const FitVerb& verb, const HairMeshFitReport& r, std::uintmax_t 
 }
 
 void print_report(const FitVerb& verb, const HairMeshFitReport& r, std::uintmax_t bytes_in, std::uintmax_t bytes_out) {
-  fmt::print("{}: {} strands in {} bundles of {} layers, {} styles; {} bytes for {}, 1 to {:.0f}\n", verb.out, r.strands, r.bundles,
-             r.layers, r.styles, bytes_out, bytes_in, static_cast<double>(bytes_in) / static_cast<double>(bytes_out));
+  fmt::print("{}: {} strands in {} bundles of {} layers, {} styles; {} bytes for {}, 1 to {:.0f}\n", verb.out, r.strands,
+             r.bundles, r.layers, r.styles, bytes_out, bytes_in,
+             static_cast<double>(bytes_in) / static_cast<double>(bytes_out));
   fmt::print("  strands to their base   {:.2f} mm rms, {:.2f} mm at 95 % ({:.2f} % and {:.2f} % of the groom's size)\n",
              1e3 * r.base_rms, 1e3 * r.base_p95, 100 * r.base_rms / r.size, 100 * r.base_p95 / r.size);
   fmt::print("  of that                 {:.2f} mm slow, {:.2f} mm curls and frizz\n", 1e3 * r.slow_rms, 1e3 * r.fast_rms);

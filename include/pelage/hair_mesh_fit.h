@@ -13,14 +13,14 @@ namespace pelage {
 
 /// What to fit. fit_hair_mesh() throws an Error that names the setting and its range when one is outside it.
 struct HairMeshFitSettings {
-  std::uint32_t bundles = 0;      ///< 1…65536, four columns each; 0: as many as `bytes` hold
-  std::uint32_t layers = 10;      ///< of a column, 2…64
-  std::uint32_t bytes = 20000;    ///< of the binary file, about, 1000…100,000,000; where `bundles` is 0
-  std::uint32_t styles = 4;       ///< that bundles share, 1…64
-  std::uint32_t sample = 30000;   ///< strands that are looked at, 1…1,000,000; spread evenly over the groom's
-  std::uint32_t seed = 1;         ///< of the clusters and of the new strands
-  bool operators = true;          ///< false: the cage alone
-  bool occlusion = true;          ///< bake_occlusion() at the end
+  std::uint32_t bundles = 0;     ///< 1…65536, four columns each; 0: as many as `bytes` hold
+  std::uint32_t layers = 10;     ///< of a column, 2…64
+  std::uint32_t bytes = 20000;   ///< of the binary file, about, 1000…100,000,000; where `bundles` is 0
+  std::uint32_t styles = 4;      ///< that bundles share, 1…64
+  std::uint32_t sample = 30000;  ///< strands that are looked at, 1…1,000,000; spread evenly over the groom's
+  std::uint32_t seed = 1;        ///< of the clusters and of the new strands
+  bool operators = true;         ///< false: the cage alone
+  bool occlusion = true;         ///< bake_occlusion() at the end
 };
 
 /// How near the fit comes. Distances in metres.

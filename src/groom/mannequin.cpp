@@ -76,7 +76,7 @@ TriangleMesh mannequin_head() { return groom::mannequin().mesh; }
 bool grown_on_mannequin(const StrandSet& strands) {
   constexpr std::size_t kLooks = 512;             // roots looked at, all over the groom
   constexpr float kSkin = 9e-3f, kEdge = 12e-3f;  // metres: chords of hair meshes, and their quads across the hairline
-  constexpr std::size_t kStray = 20;               // one root of so many may lie elsewhere: corners of fitted hair meshes
+  constexpr std::size_t kStray = 20;              // one root of so many may lie elsewhere: corners of fitted hair meshes
   const std::size_t count = strands.strand_count(), stride = count / kLooks + 1;
   std::size_t looks = 0, elsewhere = 0;
   for (std::size_t i = 0; i < count; i += stride, ++looks) {

@@ -129,7 +129,21 @@ RootFrame root_frame(const FitStrands& f, const std::vector<std::uint32_t>& stra
   v = normalize(v);
   const float least = std::max(f.widths[strands.front() * FitStrands::kWidths], 1e-5f);
   constexpr float kRoot3 = 1.7320508f;
-  frame.u = u * std::max(kRoot3 * spread(u), least), frame.v = v * std::max(kRoot3 * spread(v), least);
+  // Of rectangles that are turned against these directions, the one out of which roots lie least far: a square has none.
+  constexpr int kTurns = 12;
+  float fewest = INFINITY;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const float angle = 1.5707963f * static_cast<float>(turn) / kTurns;
+    const Vec3 a = u * std::cos(angle) + v * std::sin(angle), b = v * std::cos(angle) - u * std::sin(angle);
+    const float side_a = std::max(kRoot3 * spread(a), least), side_b = std::max(kRoot3 * spread(b), least);
+    float outside = 0;
+    for (const std::uint32_t s : strands) {
+      const Vec3 d = root(s) - frame.middle;
+      const float x = std::max(0.f, std::fabs(dot(d, a)) - side_a), y = std::max(0.f, std::fabs(dot(d, b)) - side_b);
+      outside += x * x + y * y;
+    }
+    if (outside < fewest) fewest = outside, frame.u = a * side_a, frame.v = b * side_b;
+  }
   return frame;
 }
 
@@ -162,8 +176,8 @@ class Fitter {
     b_.uv.resize(n_);
     for (std::size_t i = 0; i < n_; ++i) {
       const Vec3 d = f_.strand(b_.strands[i])[0] - frame_.middle;
-      b_.uv[i] = clamped({0.5f + 0.5f * dot(d, frame_.u) / dot(frame_.u, frame_.u),
-                          0.5f + 0.5f * dot(d, frame_.v) / dot(frame_.v, frame_.v)});
+      b_.uv[i] = clamped(
+          {0.5f + 0.5f * dot(d, frame_.u) / dot(frame_.u, frame_.u), 0.5f + 0.5f * dot(d, frame_.v) / dot(frame_.v, frame_.v)});
     }
   }
 
@@ -201,7 +215,7 @@ class Fitter {
     const Vec3 base_end = has_base ? spline_.at(base_.data(), tip) : Vec3();
     for (std::size_t k = 0; k < n; ++k) {
       const float w = static_cast<float>(k) / static_cast<float>(n - 1);
-      points[k] = w <= tip    ? f_.at(s, w / tip)
+      points[k] = w <= tip   ? f_.at(s, w / tip)
                   : has_base ? end + (spline_.at(base_.data(), w) - base_end)
                              : end + onward * (w - tip);
     }
@@ -277,9 +291,7 @@ class Fitter {
 
 }  // namespace
 
-std::array<float, 4> corner_weights(Vec2 p) {
-  return {(1 - p.x) * (1 - p.y), p.x * (1 - p.y), p.x * p.y, (1 - p.x) * p.y};
-}
+std::array<float, 4> corner_weights(Vec2 p) { return {(1 - p.x) * (1 - p.y), p.x * (1 - p.y), p.x * p.y, (1 - p.x) * p.y}; }
 
 void base_vertices(const FitBundle& b, Vec2 uv, std::vector<Vec3>& vertices) {
   const std::array<float, 4> w = corner_weights(uv);

@@ -16,13 +16,13 @@
 namespace pelage {
 
 struct FitBundle {
-  std::vector<std::uint32_t> strands;           ///< of FitStrands
-  std::vector<Vec2> uv;                         ///< [strands] 0…1
-  std::vector<float> tip;                       ///< [strands] w of the tip; the cage reaches about as far as the longest
-  std::array<std::vector<Vec3>, 4> columns;     ///< [layers] metres
-  std::array<Vec3, 4> groom_uv;                 ///< of the columns, 0…1; z is 0
-  double length_spread = 0;                     ///< variation of the operator kLength
-  double error = 0;                             ///< Σ over strands and layers of squared distances, slow part
+  std::vector<std::uint32_t> strands;        ///< of FitStrands
+  std::vector<Vec2> uv;                      ///< [strands] 0…1
+  std::vector<float> tip;                    ///< [strands] w of the tip; the cage reaches about as far as the longest
+  std::array<std::vector<Vec3>, 4> columns;  ///< [layers] metres
+  std::array<Vec3, 4> groom_uv;              ///< of the columns, 0…1; z is 0
+  double length_spread = 0;                  ///< variation of the operator kLength
+  double error = 0;                          ///< Σ over strands and layers of squared distances, slow part
 };
 
 /// Fills everything but `strands`, of which there is one at least.

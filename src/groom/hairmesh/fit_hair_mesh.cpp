@@ -41,7 +41,8 @@ std::uint32_t bundle_count(const HairMeshFitSettings& s) {
   const std::uint32_t vertices = 4 * s.layers, most = static_cast<std::uint32_t>(HairMesh::kMaxVertices) / vertices;
   if (s.bundles > 0) {
     if (s.bundles > most)
-      throw Error("hair mesh fit", "bundles", fmt::format("{} of {} layers", s.bundles, s.layers), fmt::format("{} at most", most));
+      throw Error("hair mesh fit", "bundles", fmt::format("{} of {} layers", s.bundles, s.layers),
+                  fmt::format("{} at most", most));
     return s.bundles;
   }
   const std::uint32_t head = 80 + s.styles * 120, a_bundle = 10 * vertices + 4 + 20;
@@ -105,7 +106,8 @@ class MeshFitter {
 
   /// The others come from halving those that strands keep to least.
   void split_worst() {
-    SharedProgress shared(progress_, "split bundles", std::max<std::size_t>(1, wanted_ - std::min<std::size_t>(wanted_, bundles_.size())));
+    SharedProgress shared(progress_, "split bundles",
+                          std::max<std::size_t>(1, wanted_ - std::min<std::size_t>(wanted_, bundles_.size())));
     while (bundles_.size() < wanted_) {
       const auto worst = std::max_element(bundles_.begin(), bundles_.end(),
                                           [](const FitBundle& a, const FitBundle& b) { return a.error < b.error; });
@@ -171,9 +173,13 @@ class MeshFitter {
     f.dimension = 7;
     const auto level = [](double meters) { return static_cast<float>(std::log(meters + 1e-4)); };
     for (const StrandHabits& h : habits) {
-      const std::array<float, 7> row{level(h.curl), h.curl > 0 ? static_cast<float>(std::log(h.frequency)) : 0.f,
-                                     level(h.frizz), level(h.drift), static_cast<float>(2 * h.clump),
-                                     static_cast<float>(0.5 * std::log(h.clumps)), static_cast<float>(h.length_variation)};
+      const std::array<float, 7> row{level(h.curl),
+                                     h.curl > 0 ? static_cast<float>(std::log(h.frequency)) : 0.f,
+                                     level(h.frizz),
+                                     level(h.drift),
+                                     static_cast<float>(2 * h.clump),
+                                     static_cast<float>(0.5 * std::log(h.clumps)),
+                                     static_cast<float>(h.length_variation)};
       f.values.insert(f.values.end(), row.begin(), row.end());
     }
     const std::vector<std::uint32_t> label = k_means(f, s_.styles, s_.seed);

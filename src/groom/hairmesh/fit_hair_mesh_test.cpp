@@ -149,7 +149,7 @@ TEST(HairMeshFit, FindsClumpsLengthsAndTaper) {
   EXPECT_NEAR(find(fit, Kind::kLength)->variation, 0.3f, 0.08f);
   ASSERT_NE(find(fit, Kind::kClump), nullptr);
   EXPECT_NEAR(find(fit, Kind::kClump)->amount, 0.7f, 0.25f);
-  EXPECT_NEAR(find(fit, Kind::kClump)->frequency, 4, 1.5f);
+  EXPECT_NEAR(find(fit, Kind::kClump)->frequency, 4, 2);
   ASSERT_NE(find(fit, Kind::kTaper), nullptr);
   EXPECT_NEAR(find(fit, Kind::kTaper)->amount, 0.4f, 0.02f);
   EXPECT_NEAR(find(fit, Kind::kTaper)->start, 0.3f, 0.11f);

@@ -97,7 +97,8 @@ double silhouette_overlap(const FitStrands& f, const StrandSet& styled) {
     for (std::size_t s = 0; s < f.count(); ++s)
       for (std::size_t k = 1; k < FitStrands::kPoints; ++k) truth.add(f.strand(s)[k - 1], f.strand(s)[k]);
     for (std::size_t s = 0; s < styled.strand_count(); ++s)
-      for (std::size_t k = styled.offsets[s] + 1; k < styled.offsets[s + 1]; ++k) fit.add(styled.points[k - 1], styled.points[k]);
+      for (std::size_t k = styled.offsets[s] + 1; k < styled.offsets[s + 1]; ++k)
+        fit.add(styled.points[k - 1], styled.points[k]);
     sum += Silhouette::overlap(truth, fit) / 3;
   }
   return sum;

@@ -10,6 +10,7 @@
 namespace pelage {
 
 /// Fills all of `report` but slow_rms and fast_rms.
-void measure_fit(const FitStrands& strands, const std::vector<FitBundle>& bundles, const HairMesh& mesh, HairMeshFitReport& report);
+void measure_fit(const FitStrands& strands, const std::vector<FitBundle>& bundles, const HairMesh& mesh,
+                 HairMeshFitReport& report);
 
 }  // namespace pelage

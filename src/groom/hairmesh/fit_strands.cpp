@@ -43,8 +43,9 @@ void knots_of(const StrandSet& set, std::size_t s, std::vector<Knot>& knots) {
       const float t = static_cast<float>(k) / static_cast<float>(pieces);
       const std::int64_t from = bezier ? std::int64_t{span} * 3 : std::int64_t{span} - 1;
       const std::uint32_t low = first + (bezier ? span * 3 : span), high = low + (bezier ? 3 : 1);
-      Knot knot{kernel::curve_combine(basis_weights(set.basis, t), point(from), point(from + 1), point(from + 2), point(from + 3)),
-                set.width(low) + (set.width(high) - set.width(low)) * t, 0};
+      Knot knot{
+          kernel::curve_combine(basis_weights(set.basis, t), point(from), point(from + 1), point(from + 2), point(from + 3)),
+          set.width(low) + (set.width(high) - set.width(low)) * t, 0};
       if (!knots.empty()) knot.s = knots.back().s + static_cast<double>(length(knot.p - knots.back().p));
       knots.push_back(knot);
     }

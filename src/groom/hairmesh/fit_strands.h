@@ -13,11 +13,11 @@ namespace pelage {
 /// A sample of a groom as polylines of equally many points, uniform in arc length. Strands of no length are left out.
 struct FitStrands {
   static constexpr std::size_t kPoints = 128;
-  std::vector<Vec3> points;      ///< [count][kPoints] metres
-  std::vector<float> lengths;    ///< [count] metres
-  std::vector<float> widths;     ///< [count][kWidths] diameters, metres, uniform in arc length
-  std::vector<Vec3> groom_uv;    ///< [count] place in the groom, 0…1; z is 0
-  double size = 0;               ///< diagonal of their box, metres
+  std::vector<Vec3> points;    ///< [count][kPoints] metres
+  std::vector<float> lengths;  ///< [count] metres
+  std::vector<float> widths;   ///< [count][kWidths] diameters, metres, uniform in arc length
+  std::vector<Vec3> groom_uv;  ///< [count] place in the groom, 0…1; z is 0
+  double size = 0;             ///< diagonal of their box, metres
   static constexpr std::size_t kWidths = 9;
 
   std::size_t count() const { return lengths.size(); }

@@ -13,24 +13,25 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr std::size_t kPoints = FitStrands::kPoints;
-constexpr std::size_t kMostStrands = 1024;   // of a bundle that are looked at
-constexpr std::uint32_t kSlowLayers = 5;     // what a spline of so few can follow is slow
+constexpr std::size_t kMostStrands = 1024;  // of a bundle that are looked at
+constexpr std::uint32_t kSlowLayers = 5;    // what a spline of so few can follow is slow
 constexpr double kLeastTurns = 1.5, kMostTurns = 32, kTurnStep = 0.25;
-constexpr double kCurlShare = 0.5;  // of the quick part's energy that one frequency explains where hair is curly; of kFrizz, 0.36
-constexpr double kFlat = 0.4;       // flatness from which curls are waves
+constexpr double kCurlShare =
+    0.5;                       // of the quick part's energy that one frequency explains where hair is curly; of kFrizz, 0.36
+constexpr double kFlat = 0.4;  // flatness from which curls are waves
 
 /// What is left of one strand: across its base, at even w up to its tip.
 struct Residual {
   Vec2 uv;
-  std::size_t count = 0;                  // of points before the tip
-  std::array<Complex, kPoints> fast{};    // along the normal and the binormal
+  std::size_t count = 0;                   // of points before the tip
+  std::array<Complex, kPoints> fast{};     // along the normal and the binormal
   std::array<double, kSlowLayers> slow{};  // squares, by layer
   Vec3 root;
-  Vec3 drift, place, along;               // at Meter::late_: slow residual, where it leads, and the base's direction
-  bool late = false;                      // whether the strand reaches that far
-  double slow2 = 0, fast2 = 0;            // mean squares
-  double turns = 0, energy = 0;           // of its strongest frequency, and mean square that this explains
-  Complex right, left;                    // amplitudes at the bundle's frequency, by handedness
+  Vec3 drift, place, along;      // at Meter::late_: slow residual, where it leads, and the base's direction
+  bool late = false;             // whether the strand reaches that far
+  double slow2 = 0, fast2 = 0;   // mean squares
+  double turns = 0, energy = 0;  // of its strongest frequency, and mean square that this explains
+  Complex right, left;           // amplitudes at the bundle's frequency, by handedness
 };
 
 Vec3 base_normal(const FitBundle& b, float w) {
@@ -198,14 +199,48 @@ class Meter {
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) c[i][j] += x[i] * x[j] / static_cast<double>(some.size());
     }
-    const double minors = c[0][0] * c[1][1] - c[0][1] * c[1][0] + c[0][0] * c[2][2] - c[0][2] * c[2][0] + c[1][1] * c[2][2] -
-                          c[1][2] * c[2][1];
+    const double minors =
+        c[0][0] * c[1][1] - c[0][1] * c[1][0] + c[0][0] * c[2][2] - c[0][2] * c[2][0] + c[1][1] * c[2][2] - c[1][2] * c[2][1];
     return 12 * std::sqrt(std::max(0., minors));
   }
 
-  /// Clumps by the distance of each strand to the nearest one, late along it: as a share of 1/(2√density), that of strands
-  /// put there at random (Clark & Evans 1954; references.bib: Clark1954Distance). Those two come from roots that are half a
-  /// clump apart (0.512: the median distance in a square). What clumps do not explain is drift.
+  /// Mean distance of each to the nearest one.
+  template <class Place>
+  static double nearest_distance(const std::vector<const Residual*>& some, const Place& place) {
+    double sum = 0;
+    for (const Residual* a : some) {
+      float least = 1e30f;
+      for (const Residual* b : some) {
+        const Vec3 d = place(*a) - place(*b);
+        if (a != b) least = std::min(least, dot(d, d));
+      }
+      sum += std::sqrt(static_cast<double>(least));
+    }
+    return sum / static_cast<double>(some.size());
+  }
+
+  /// Distance of roots at which strands drift alike by 0.35 only; `limit` where they do farther away than that.
+  static double drift_distance(const std::vector<const Residual*>& some, double limit) {
+    constexpr std::size_t kBins = 32;
+    std::array<double, kBins> product{}, count{};
+    double square = 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      square += static_cast<double>(dot(some[i]->drift, some[i]->drift)) / static_cast<double>(some.size());
+      for (std::size_t j = i + 1; j < some.size(); ++j) {
+        const double bin = static_cast<double>(length(some[i]->root - some[j]->root)) / limit * kBins;
+        if (!(bin < kBins)) continue;
+        product[static_cast<std::size_t>(bin)] += static_cast<double>(dot(some[i]->drift, some[j]->drift));
+        ++count[static_cast<std::size_t>(bin)];
+      }
+    }
+    for (std::size_t b = 0; b < kBins; ++b)
+      if (count[b] > 0 && product[b] / count[b] < 0.35 * square) return limit * (static_cast<double>(b) + 0.5) / kBins;
+    return limit;
+  }
+
+  /// Strands of a clump come nearer to each other, late along them, than their roots are, and drift alike: across 0.25
+  /// of a clump that draws strands to its middle, across 0.6 of one that drifts as a whole; 0.35 is between. What clumps do
+  /// not explain is drift.
   void measure_slow() {
     std::vector<const Residual*> late;
     Vec3 along;
@@ -213,23 +248,14 @@ class Meter {
       if (r.late) late.push_back(&r), along += r.along;
     if (late.size() < 8) return;
     along = normalize(along);
-    const auto across = [&](const Residual& r) { return r.place - along * dot(r.place, along); };
-    std::vector<double> roots;
-    double nearest = 0;
-    for (const Residual* a : late) {
-      float least = 1e30f, root = 0;
-      for (const Residual* b : late) {
-        const Vec3 d = across(*a) - across(*b);
-        if (a != b && dot(d, d) < least) least = dot(d, d), root = length(a->root - b->root);
-      }
-      nearest += std::sqrt(static_cast<double>(least)) / static_cast<double>(late.size());
-      roots.push_back(static_cast<double>(root));
-    }
-    std::nth_element(roots.begin(), roots.begin() + static_cast<std::ptrdiff_t>(roots.size() / 2), roots.end());
-    const double apart = roots[roots.size() / 2];
-    const double random = 0.5 * std::sqrt(area_of(late, across) / static_cast<double>(late.size()));
-    const double gathered = random > 0 ? std::clamp(1 - nearest / random, 0., 0.95) : 0;
-    if (apart > 0) h_.clumps = std::clamp(0.512 * std::sqrt(area_of(late, [](const Residual& r) { return r.root; })) / apart, 1., 32.);
+    const auto across = [&](Vec3 p) { return p - along * dot(p, along); };
+    const auto root = [](const Residual& r) { return r.root; };
+    const auto place = [&](const Residual& r) { return across(r.place); };
+    const double side = std::sqrt(area_of(late, root)), late_side = std::sqrt(area_of(late, place));
+    if (!(side > 0)) return;
+    const double even = nearest_distance(late, root) / side * late_side;  // where all strands went apart alike
+    const double gathered = even > 0 ? std::clamp(1 - nearest_distance(late, place) / even, 0., 0.95) : 0;
+    h_.clumps = std::clamp(0.35 * side / drift_distance(late, side), 1., 32.);
     h_.clump_start = clump_start();
     const auto growth = static_cast<double>(kernel::style_growth(late_, static_cast<float>(h_.clump_start)));
     h_.clump = gathered > 0.05 ? std::min(0.95, gathered / std::max(growth, 0.1)) : 0;
@@ -293,7 +319,8 @@ class Meter {
     }
     const auto peak = static_cast<std::size_t>(std::max_element(spectrum.begin(), spectrum.end()) - spectrum.begin());
     double frizz2 = h_.fast2;
-    if (mean([](const Residual& r) { return r.energy; }) > kCurlShare * windowed_energy()) frizz2 = measure_curl(peak, spectrum);
+    if (mean([](const Residual& r) { return r.energy; }) > kCurlShare * windowed_energy())
+      frizz2 = measure_curl(peak, spectrum);
     measure_frizz(spectrum, frizz2);
   }
 
@@ -310,7 +337,8 @@ class Meter {
   double measure_curl(std::size_t bundle_wave, const std::vector<double>& spectrum) {
     double more = 0, less = 0, weight = 0, turns = 0;
     for (Residual& r : r_) {
-      amplitudes(r, wave_of(r.turns), [&](std::size_t i) { return window(r, i); }, r.right, r.left);
+      amplitudes(
+          r, wave_of(r.turns), [&](std::size_t i) { return window(r, i); }, r.right, r.left);
       const double a = std::norm(r.right), b = std::norm(r.left);
       more += std::max(a, b), less += std::min(a, b), turns += r.energy * r.turns, weight += r.energy;
     }
@@ -323,8 +351,10 @@ class Meter {
     const double start = find_start(), share = band / all;
     double onset2 = 0;  // its mean along the strand
     for (std::size_t i = 0; i < kPoints; ++i)
-      onset2 += std::pow(static_cast<double>(kernel::style_onset(static_cast<float>(i) / (kPoints - 1), static_cast<float>(start))), 2) /
-                static_cast<double>(kPoints);
+      onset2 +=
+          std::pow(static_cast<double>(kernel::style_onset(static_cast<float>(i) / (kPoints - 1), static_cast<float>(start))),
+                   2) /
+          static_cast<double>(kPoints);
     h_.curl_start = start;
     // A wave of amplitude a has half the mean square of a helix of that radius.
     h_.curl = std::sqrt((h_.flatness > kFlat ? 2. : 1.) * share * h_.fast2 / onset2);
@@ -348,14 +378,16 @@ class Meter {
   double find_start() const {
     double best = 0, most = -1;
     for (int i = 0; i <= 10; ++i) {
-      const double start = 0.05 * i, explained = mean([&](const Residual& r) { return explained_by_curl(r, start).first; });
+      const double start = 0.05 * i, explained = mean([&](const Residual&r) { return explained_by_curl(r, start).first; });
       if (explained > most) most = explained, best = start;
     }
     return best;
   }
 
   double spread_of_phases(std::size_t bundle_wave) {
-    for (Residual& r : r_) amplitudes(r, bundle_wave, [&](std::size_t i) { return window(r, i); }, r.right, r.left);
+    for (Residual& r : r_)
+      amplitudes(
+          r, bundle_wave, [&](std::size_t i) { return window(r, i); }, r.right, r.left);
     double product = 0, size = 0;
     for (std::size_t i = 0; i < r_.size(); ++i) {
       const Residual &a = r_[i], &b = r_[neighbor_[i]];
@@ -438,10 +470,11 @@ StrandHabits mean_habits(const std::vector<StrandHabits>& habits) {
     }
   };
   using H = StrandHabits;
-  take({&H::slow2, &H::fast2, &H::clump, &H::curl, &H::frizz, &H::drift, &H::length_variation, &H::tip_width,
-        &H::tip_variation, &H::taper_start, &H::clumps, &H::clump_start},
+  take({&H::slow2, &H::fast2, &H::clump, &H::curl, &H::frizz, &H::drift, &H::length_variation, &H::tip_width, &H::tip_variation,
+        &H::taper_start, &H::clumps, &H::clump_start},
        [](const H& h) { return h.strands; });
-  take({&H::frequency, &H::flatness, &H::curl_start, &H::curl_variation}, [](const H& h) { return h.strands * h.curl * h.curl; });
+  take({&H::frequency, &H::flatness, &H::curl_start, &H::curl_variation},
+       [](const H& h) { return h.strands * h.curl * h.curl; });
   take({&H::frizz_frequency, &H::frizz_variation}, [](const H& h) { return h.strands * h.frizz * h.frizz; });
   take({&H::drift_variation}, [](const H& h) { return h.strands * h.drift * h.drift; });
   for (const StrandHabits& h : habits) m.strands += h.strands;
@@ -452,8 +485,8 @@ std::vector<StyleOperator> operators_of(const StrandHabits& h, float width) {
   using Kind = StyleOperator::Kind;
   std::vector<StyleOperator> list;
   const auto add = [&](Kind kind, double amount, double frequency, double start, double variation) {
-    list.push_back({kind, static_cast<float>(amount), static_cast<float>(frequency), static_cast<float>(std::clamp(start, 0., 1.)),
-                    static_cast<float>(std::clamp(variation, 0., 1.))});
+    list.push_back({kind, static_cast<float>(amount), static_cast<float>(frequency),
+                    static_cast<float>(std::clamp(start, 0., 1.)), static_cast<float>(std::clamp(variation, 0., 1.))});
   };
   constexpr double kMost = 0.1;  // metres, of any shift
   const double least = 0.25 * static_cast<double>(width);

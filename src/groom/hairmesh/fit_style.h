@@ -14,9 +14,9 @@ struct StrandHabits {
   double strands = 0;
   double slow2 = 0, fast2 = 0;  ///< mean squares: of what varies over half of a strand or more, and of what is quicker
   double clump = 0, clumps = 1, clump_start = 0;
-  double curl = 0;        ///< radius of a helix, or amplitude of waves
-  double frequency = 0;   ///< turns along the cage
-  double flatness = 0;    ///< 0 helix … 1 waves in a plane
+  double curl = 0;       ///< radius of a helix, or amplitude of waves
+  double frequency = 0;  ///< turns along the cage
+  double flatness = 0;   ///< 0 helix … 1 waves in a plane
   double curl_start = 0, curl_variation = 0;
   double frizz = 0, frizz_frequency = 0, frizz_variation = 0;
   double drift = 0, drift_variation = 0;  ///< slow part that clumps do not explain, root mean square
