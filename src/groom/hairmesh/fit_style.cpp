@@ -264,28 +264,27 @@ class Meter {
 
   /// A strand of a square cell lies 0.323 cells from a middle that is off by up to a quarter, on either axis (root mean square).
   void measure_drift() {
-    double drift2 = 0, together = 0;
-    for (std::size_t i = 0; i < r_.size(); ++i) {
-      drift2 += static_cast<double>(dot(r_[i].drift, r_[i].drift)) / static_cast<double>(r_.size());
-      together += static_cast<double>(dot(r_[i].drift, r_[neighbor_[i]].drift)) / static_cast<double>(r_.size());
-    }
+    const double drift2 = mean([](const Residual& r) { return static_cast<double>(dot(r.drift, r.drift)); });
     if (!(drift2 > 0)) return;
     const Vec3 u = (b_.columns[1].back() - b_.columns[0].back() + b_.columns[2].back() - b_.columns[3].back()) * 0.5f;
     const Vec3 v = (b_.columns[3].back() - b_.columns[0].back() + b_.columns[2].back() - b_.columns[1].back()) * 0.5f;
     const double clumped2 = std::pow(0.323 * h_.clump / h_.clumps, 2) * static_cast<double>(dot(u, u) + dot(v, v));
     h_.drift = std::sqrt(std::max(0., 1 - clumped2 / drift2) * h_.slow2);
-    h_.drift_variation = spread_of_turns(together / drift2);
+    h_.drift_variation = spread_of_turns(
+        [](const Residual& a, const Residual& b) { return static_cast<double>(dot(normalize(a.drift), normalize(b.drift))); });
   }
 
-  /// The x over which phases spread evenly where neighbors have a mean cosine of `cosine` = sinc²(x).
-  static double spread_of_turns(double cosine) {
-    const double sinc = std::sqrt(std::clamp(cosine, 0., 1.));
-    double low = 0, high = 1;
-    for (int i = 0; i < 30; ++i) {
-      const double x = 0.5 * (low + high), value = std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
-      (value > sinc ? low : high) = x;
-    }
-    return low;
+  /// The x over which phases spread evenly, by how neighbors agree: cosine(strand, strand). Half of them differ by less than
+  /// (1 − √½)·x turns. The median, for the nearest root may belong to another lock.
+  template <class Cosine>
+  double spread_of_turns(const Cosine& cosine) const {
+    std::vector<double> turns;
+    for (std::size_t i = 0; i < r_.size(); ++i)
+      turns.push_back(std::acos(std::clamp(cosine(r_[i], r_[neighbor_[i]]), -1., 1.)) / (2 * std::numbers::pi));
+    if (turns.empty()) return 0;
+    const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
+    std::nth_element(turns.begin(), middle, turns.end());
+    return std::min(1., *middle / (1 - std::sqrt(0.5)));
   }
 
   /// The start whose growth is nearest to that of the residual, layer by layer.
@@ -388,13 +387,10 @@ class Meter {
     for (Residual& r : r_)
       amplitudes(
           r, bundle_wave, [&](std::size_t i) { return window(r, i); }, r.right, r.left);
-    double product = 0, size = 0;
-    for (std::size_t i = 0; i < r_.size(); ++i) {
-      const Residual &a = r_[i], &b = r_[neighbor_[i]];
-      product += (a.right * std::conj(b.right) + a.left * std::conj(b.left)).real();
-      size += std::sqrt((std::norm(a.right) + std::norm(a.left)) * (std::norm(b.right) + std::norm(b.left)));
-    }
-    return size > 0 ? spread_of_turns(product / size) : 0;
+    return spread_of_turns([&](const Residual& a, const Residual& b) {
+      const double size = std::sqrt((std::norm(a.right) + std::norm(a.left)) * (std::norm(b.right) + std::norm(b.left)));
+      return size > 0 ? (a.right * std::conj(b.right) + a.left * std::conj(b.left)).real() / size : 0;
+    });
   }
 
   /// style_frizz() has half of its amount as root mean square; strands have 1 − variation·√(even) of that, of which the mean
