@@ -179,6 +179,19 @@ TEST(HairMeshFit, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(HairMeshFit, ASampleStandsForTheGroom) {
+  const StrandSet strands = expand(testing::small_hair_mesh({{Kind::kCurl, 0.004f, 7, 0, 1}}, 2, 6, 1001));
+  HairMeshFitSettings s = quick(7);
+  HairMeshFitReport all, some;
+  s.sample = 10000;
+  fit_hair_mesh(strands, s, &all);
+  s.sample = 777;
+  EXPECT_EQ(strand_count(fit_hair_mesh(strands, s, &some)), 4004u);
+  EXPECT_EQ(some.sampled, 777u);
+  EXPECT_NEAR(some.base_rms, all.base_rms, 0.1 * all.base_rms);
+  EXPECT_NEAR(some.operator_rms, all.operator_rms, 0.15 * all.operator_rms);
+}
+
 // One strand, two of the same, a few of which some have no length.
 TEST(HairMeshFit, TakesHardlyAnyHair) {
   StrandSet set;

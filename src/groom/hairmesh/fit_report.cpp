@@ -39,13 +39,11 @@ ExpandSettings as_many(const HairMesh& mesh, std::size_t strands) {
 }
 
 /// Root mean square of the way between the same points of the mesh's strands with and without what shifts them.
-double operator_rms(const HairMesh& mesh, const StrandSet& styled) {
+double operator_rms(const HairMesh& mesh, const ExpandSettings& settings, const StrandSet& styled) {
   HairMesh plain = mesh;
   for (std::vector<StyleOperator>& style : plain.styles)
     std::erase_if(style, [](const StyleOperator& o) { return o.kind != StyleOperator::Kind::kLength; });
-  ExpandSettings e;
-  e.share = as_many(mesh, styled.strand_count()).share;
-  const StrandSet base = expand(plain, e);
+  const StrandSet base = expand(plain, settings);
   double sum = 0;
   for (std::size_t i = 0; i < base.point_count(); ++i) {
     const Vec3 d = styled.points[i] - base.points[i];
@@ -118,8 +116,9 @@ void measure_fit(const FitStrands& f, const std::vector<FitBundle>& bundles, con
   const auto p95 = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() * 95 / 100);
   std::nth_element(distance.begin(), p95, distance.end());
   r.base_p95 = static_cast<double>(*p95);
-  const StrandSet styled = expand(mesh, as_many(mesh, f.count()));
-  r.operator_rms = operator_rms(mesh, styled);
+  const ExpandSettings settings = as_many(mesh, f.count());
+  const StrandSet styled = expand(mesh, settings);
+  r.operator_rms = operator_rms(mesh, settings, styled);
   r.silhouette_overlap = silhouette_overlap(f, styled);
 }
 
