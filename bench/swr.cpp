@@ -3,6 +3,7 @@
 // A frame is what makes the hair of a picture: lod, raster, shade and filter, from the cages to premultiplied color. Maps of light
 // are made once, as in the paper; opaque meshes and the tone map are no part of it.
 #include <pelage/hair_mesh_styles.h>
+#include <pelage/metrics.h>
 #include <pelage/runtime.h>
 
 #include <algorithm>
@@ -12,10 +13,13 @@
 #include <memory>
 
 #include "bench.h"
+#include "composite/composite.h"
 #include "core/mesh_tracer.h"
 #include "core/parallel.h"
 #include "frame/camera_view.h"
+#include "filter/frame_mean.h"
 #include "frame/deferred_frame.h"
+#include "frame/sample_positions.h"
 #include "frame/stages.h"
 #include "groom/hairmesh/prepared.h"
 #include "groom/hairmesh/strand_group.h"
@@ -76,11 +80,13 @@ struct Input {
     grooms.materials = {scene, grooms.meshes, rig};
   }
 
-  HairPicture hair(const RenderSettings& settings, HairWork* work = nullptr) const {
+  /// position: of the one sample of each pixel.
+  HairPicture hair(const RenderSettings& settings, HairWork* work = nullptr, Vec2 position = {0.5f, 0.5f}) const {
     Scene with = scene;
     with.settings = settings;
     Stages stages({});
-    const FrameInputs inputs{with, meshes, rig, make_camera_view(scene.camera, settings.width, settings.height), {}};
+    FrameInputs inputs{with, meshes, rig, make_camera_view(scene.camera, settings.width, settings.height), {}};
+    inputs.view.center_x += 0.5f - position.x, inputs.view.center_y += 0.5f - position.y;
     return render_hair(inputs, grooms, {}, stages, work);
   }
 };
@@ -120,6 +126,41 @@ Workload frame_workload(const Distance& distance, const Kind& kind, bool lod) {
   auto in = input_at(distance.pixels);
   const RenderSettings settings = settings_of(*in, kind, lod);
   return {.check = [in, settings] { return check_frame(*in, settings); }, .run = [in, settings] { in->hair(settings); }};
+}
+
+/// Hair over nothing: linear, premultiplied, of the size of the settings.
+Image picture_of(const HairPicture& hair, const RenderSettings& s) {
+  Backdrop nothing;
+  nothing.alpha = 0;
+  return hair_over(hair, {}, nothing, s.width, s.height, 0);
+}
+
+/// 64 samples a pixel at full detail: frames of one sample each, shaded where it is, without the filter.
+const Picture& reference_at(float pixels) {
+  static std::map<float, Picture> kept;
+  Picture& reference = kept[pixels];
+  if (!reference.image.pixels.empty()) return reference;
+  const auto in = input_at(pixels);
+  const RenderSettings s = settings_of(*in, kKinds[0], false);
+  FrameMean mean;
+  for (const Vec2 position : pixel_sample_positions(64)) mean.add(picture_of(in->hair(s, nullptr, position), s));
+  reference.image = mean.take();
+  return reference;
+}
+
+/// Error of a picture against that, over its hair, before a gray background.
+Workload quality_workload(const Distance& distance, const Kind& kind, bool lod, const std::string& metric) {
+  return {.check = [] { return std::string(); },
+          .measure =
+              [=] {
+                const auto in = input_at(distance.pixels);
+                const RenderSettings s = settings_of(*in, kind, lod);
+                const Picture& reference = reference_at(distance.pixels);
+                const Picture gray = over_background(reference, s.background);
+                const Comparison c = compare_images(over_background({picture_of(in->hair(s), s)}, s.background), gray,
+                                                    {.metrics = {metric}, .mask = hair_mask(reference)});
+                return c.value(metric).value();
+              }};
 }
 
 /// Share of the strands that level of detail draws.
@@ -186,6 +227,11 @@ void add_swr_cases(Suite& suite) {
       for (const bool lod : {false, true})
         suite.cases.push_back({at + kind.name + (lod ? ".lod" : ".full"), "seconds_per_frame", "s",
                                [distance, kind, lod] { return frame_workload(distance, kind, lod); }});
+    for (const Kind& kind : kKinds)
+      for (const bool lod : {false, true})
+        for (const char* metric : {"flip", "mse"})
+          suite.cases.push_back({at + "quality." + kind.name + (lod ? ".lod" : ".full"), metric, "1",
+                                 [=] { return quality_workload(distance, kind, lod, metric); }});
     suite.cases.push_back({at + "prepass", "seconds_per_frame", "s", [distance] { return prepass_workload(distance); }});
     suite.cases.push_back({at + "strands", "share", "1", [distance] { return strands_workload(distance); }});
     suite.ratios.push_back({at + "lod_gain", {at + "filter.full"}, {at + "filter.lod"}});
