@@ -135,11 +135,13 @@ void render_verb(const RenderOptions& options) {
 }
 
 void add_picture_options(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("--method", o.method,
-                  "Anti-aliasing: msaa (samples of one frame share shading), ssaa (each is shaded), taa, fxaa, smaa, "
-                  "link (one sample, then strands are linked and smoothed), link-taa or oidn")
+  verb.add_option(
+          "--method", o.method,
+          "Anti-aliasing: msaa (samples of one frame share shading), ssaa (each is shaded), taa, fxaa, smaa, "
+          "link (one sample, then strands are linked and smoothed), link-taa, oidn, or swr (hair meshes, made on the fly)")
       ->type_name("NAME");
-  verb.add_option("--spp", o.samples, "Samples per pixel; msaa: 1, 2, 4, 8 or 16; link: 1, 4, 9 or 16; ssaa: any number")
+  verb.add_option("--spp", o.samples,
+                  "Samples per pixel; msaa: 1, 2, 4, 8 or 16; link: 1, 4, 9 or 16; swr: 1, 2, 4 or 8; ssaa: any number")
       ->check(CLI::Range(1, 4096));
   verb.add_option("--frames", o.frames,
                   "Pictures of a sequence (an output like out.####.exr, or --orbit); else frames that taa blends")
@@ -151,7 +153,8 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
                   "linked (pixels that were hit and filled), alpha (opacity before the filter)")
       ->type_name("NAME");
   verb.add_option("--alpha", o.alpha,
-                  "Opacity from covered samples or exact area: samples, analytic; of link: count, coverage or none")
+                  "Opacity from covered samples or exact area: samples, analytic; of link: count, coverage or none; of swr: "
+                  "ratio or coverage")
       ->type_name("NAME");
   verb.add_option("--kernel-radius", o.kernel_radius,
                   "link: half of the filter's length for thin hair; it adapts to other hair; 7")

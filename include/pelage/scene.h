@@ -175,18 +175,18 @@ enum class SwrAlpha {
 
 /// Deferred software rasterization of hair meshes, of Method::kSwr: the symbols of Lipp 2026 (docs/methods.md).
 struct SwrSettings {
-  bool lod = true;               ///< fewer strands and points of bundles that are small on the screen: eq. 1 to 5
-  int points = 127;              ///< C_max of eq. 4: control points of a strand at full detail, 3…127
-  bool thicken = true;           ///< strands that stay take over the width of those that are left out; false: as published
-  bool depth_correction = true;  ///< eq. 8: of light that comes through strands that were left out
-  bool filter = true;            ///< reconnection filter, of pictures of one sample; false: samples as they are
-  int radius = 5;                ///< r of §3.3.1, pixels, 1…15
-  float s_parallel = 0.7f;       ///< s∥: σ∥ = r·s∥
-  float s_perpendicular = 0.2f;  ///< s⊥: σ⊥ = r·s⊥
-  float sigma_color = 0.9f;      ///< σ_c of eq. 10, linear radiance
-  float depth_tolerance = 0.1f;  ///< neighbors farther off than this share of the hair's depth do not count
-  float connect_depth = 0.05f;   ///< share of the hair's depth from which a strand in front of the pixel's own is another one
-  float strip = 0.5f;            ///< w_strip, pixels: half the width of the strip in which hits are counted
+  bool lod = true;                ///< fewer strands and points of bundles that are small on the screen: eq. 1 to 5
+  int points = 127;               ///< C_max of eq. 4: control points of a strand at full detail, 3…127
+  bool thicken = true;            ///< strands that stay take over the width of those that are left out; false: as published
+  bool depth_correction = true;   ///< eq. 8: of light that comes through strands that were left out
+  bool filter = true;             ///< reconnection filter, of pictures of one sample; false: samples as they are
+  int radius = 5;                 ///< r of §3.3.1, pixels, 1…15
+  float s_parallel = 0.56f;       ///< s∥: σ∥ = r·s∥
+  float s_perpendicular = 0.28f;  ///< s⊥: σ⊥ = r·s⊥
+  float sigma_color = 0.9f;       ///< σ_c of eq. 10, linear radiance
+  float depth_tolerance = 1;      ///< neighbors farther off than this share of the hair's depth do not count
+  float connect_depth = 0.05f;    ///< share of the hair's depth from which a strand in front of the pixel's own is another one
+  float strip = 0.5f;             ///< w_strip, pixels: half the width of the strip in which hits are counted
   SwrAlpha alpha = SwrAlpha::kRatio;
 };
 

@@ -103,6 +103,7 @@ struct DeferredBuffer {
   Buffer<PixelKey> center;        ///< [h·w] a strand's band covers the pixel's center
   Buffer<PixelKey> conservative;  ///< [h·w] a strand touches the pixel, or covers its center
   Buffer<PixelKey> sample_keys;   ///< [h·w·samples]
+  Buffer<float> coverage;         ///< [h·w] share of the pixel that strands cover, 0…1: raster/coverage.h
 };
 
 /// The hair of the part of the picture that a DeferredBuffer shows, without its background.

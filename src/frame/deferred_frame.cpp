@@ -74,7 +74,10 @@ HairPicture render_hair(const FrameInputs& inputs, const DeferredGrooms& grooms,
   DeferredBuffer buffer;
   stages.run("raster", "points", [&](const Progress& progress) {
     place_deferred(scene, grooms.meshes, selection, inputs.view, buffer);
-    const DeferredLayers layers{.center = !sampled, .conservative = filtered, .samples = sampled ? settings.samples : 0};
+    const DeferredLayers layers{.center = !sampled,
+                                .conservative = filtered,
+                                .samples = sampled ? settings.samples : 0,
+                                .coverage = filtered && settings.swr.alpha == SwrAlpha::kCoverage};
     raster_hair_meshes(scene, grooms.meshes, selection, inputs.view, layers, opaque_depth, buffer, progress);
     return StageWork{selection.points, bytes_of(buffer)};
   });
@@ -89,7 +92,7 @@ HairPicture render_hair(const FrameInputs& inputs, const DeferredGrooms& grooms,
 
   HairPicture hair;
   stages.run(filtered ? "filter.reconnect" : "filter.samples", "pixels", [&](const Progress&) {
-    hair = filtered ? reconnect(buffer, radiance, settings.swr) : mean_of_samples(buffer, radiance);
+    hair = filtered ? reconnect(buffer, radiance, settings.swr, buffer.coverage) : mean_of_samples(buffer, radiance);
     return StageWork{hair.color.size(), hair.color.bytes()};
   });
   if (work) *work = {selection.strands, selection.points, radiance.color.size()};

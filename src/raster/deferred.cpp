@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "assemble/strand_block.h"
@@ -14,7 +15,9 @@
 #include "frame/camera_view.h"
 #include "groom/hairmesh/prepared.h"
 #include "groom/hairmesh/strand_group.h"
+#include "raster/coverage.h"
 #include "raster/fragments.h"
+#include "raster/gbuffer.h"
 #include "raster/tile_locks.h"
 
 namespace pelage {
@@ -28,6 +31,8 @@ struct Worker {
   StrandGroup group;
   ScreenBlock block;
   FragmentBuffer at_centers, touching;
+  ScreenBlock runs;
+  CoverageScratch coverage;
 };
 
 /// Sixteen strands of a bundle, or what is left of it.
@@ -68,6 +73,61 @@ class Strands {
   std::span<const DeferredGroom> grooms_;
   const LodSelection& selection_;
   std::vector<StrandBlockJob> jobs_;
+};
+
+/// The strands of `block` one after the other, as raster_coverage() takes them.
+void lay_out_runs(const ScreenBlock& block, ScreenBlock& runs) {
+  const std::size_t size = block.x.size(), points = block.count / block.stride;
+  if (runs.x.size() < size) {
+    for (Buffer<float>* b : {&runs.x, &runs.y, &runs.depth, &runs.radius, &runs.cap_x, &runs.cap_y})
+      b->resize(size), b->fill(1.f);
+    runs.id.resize(size), runs.id.fill(ScreenBlock::kNoSegment);
+  }
+  runs.count = 0, runs.stride = 1;
+  for (std::size_t strand = 0; strand < block.stride; ++strand) {
+    if (block.stride > 1 && block.id[strand] == ScreenBlock::kNoSegment) continue;  // a lane without a strand
+    for (std::size_t i = 0; i < points; ++i) {
+      const std::size_t from = i * block.stride + strand, to = runs.count++;
+      runs.x[to] = block.x[from], runs.y[to] = block.y[from], runs.depth[to] = block.depth[from];
+      runs.radius[to] = block.radius[from], runs.cap_x[to] = block.cap_x[from], runs.cap_y[to] = block.cap_y[from];
+      runs.id[to] = block.id[from] == ScreenBlock::kNoSegment ? ScreenBlock::kNoSegment : static_cast<std::uint32_t>(to);
+    }
+  }
+}
+
+/// The layer of areas while it is drawn.
+class CoverageLayer {
+ public:
+  /// Of the part of the picture in `out`; hair behind all opaque samples of a pixel is hidden.
+  CoverageLayer(const DeferredBuffer& out, const CameraView& picture, const Buffer<float>& opaque, std::size_t opaque_samples)
+      : tiles_(out.view.width, out.view.height) {
+    const auto width = static_cast<std::size_t>(out.view.width), height = static_cast<std::size_t>(out.view.height);
+    if (!opaque.empty()) area_.opaque_depth.resize(width * height);
+    for (std::size_t y = 0; y < height && !opaque.empty(); ++y)
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t row = (y + static_cast<std::size_t>(out.top)) * static_cast<std::size_t>(picture.width);
+        const float* depth = &opaque[(row + x + static_cast<std::size_t>(out.left)) * opaque_samples];
+        area_.opaque_depth[y * width + x] = *std::max_element(depth, depth + opaque_samples);
+      }
+    clear_gbuffer(out.view, kLayers, area_);
+  }
+  void draw(const ScreenBlock& block, Worker& worker) {
+    if (block.stride > 1) lay_out_runs(block, worker.runs);
+    raster_coverage(block.stride > 1 ? worker.runs : block, worker.coverage, tiles_, area_);
+  }
+  Buffer<float> finish() {
+    finish_gbuffer(kLayers, area_);
+    Buffer<float> covered(area_.coverage.size());
+    parallel_for(covered.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) covered[p] = analytic_coverage(area_, p);
+    });
+    return covered;
+  }
+
+ private:
+  static constexpr RasterLayers kLayers{.center = false, .coverage = true};
+  GBuffer area_;
+  FullTiles tiles_;
 };
 
 /// Keys before any strand: nothing, or the opaque scene.
@@ -143,7 +203,7 @@ std::uint64_t raster_hair_meshes(const Scene& scene, std::span<const DeferredGro
   const int width = out.view.width, height = out.view.height;
   out.samples = std::max(1, layers.samples);
   const auto samples = static_cast<std::size_t>(out.samples);
-  out.center.release(), out.conservative.release(), out.sample_keys.release();
+  out.center.release(), out.conservative.release(), out.sample_keys.release(), out.coverage.release();
   if (layers.center) clear(out.center, 1, opaque_depth, samples, view, out);
   if (layers.conservative) clear(out.conservative, 1, opaque_depth, samples, view, out);
   if (layers.samples > 0) clear(out.sample_keys, samples, opaque_depth, samples, view, out);
@@ -153,6 +213,8 @@ std::uint64_t raster_hair_meshes(const Scene& scene, std::span<const DeferredGro
   const Strands strands(scene, grooms, selection, out.view);
   TileLocks locks(width, height);
   tbb::enumerable_thread_specific<Worker> workers;
+  std::optional<CoverageLayer> coverage;
+  if (layers.coverage) coverage.emplace(out, view, opaque_depth, samples);
   std::atomic<std::uint64_t> segments{0};
   SharedProgress shared(progress, "raster", std::max<std::size_t>(1, groups.size()));
   parallel_for(groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
@@ -165,12 +227,14 @@ std::uint64_t raster_hair_meshes(const Scene& scene, std::span<const DeferredGro
                         layers.conservative ? out.conservative.data() : nullptr);
       if (layers.samples > 0)
         raster_deferred_samples(w.block, out.range, width, height, layers.samples, w.at_centers, locks, out.sample_keys.data());
+      if (coverage) coverage->draw(w.block, w);
     }
     segments.fetch_add(drawn, std::memory_order_relaxed);
     shared.add(end - begin);
   });
   if (!opaque_depth.empty())
     for (Buffer<PixelKey>* keys : {&out.center, &out.conservative, &out.sample_keys}) finish(*keys);
+  if (coverage) out.coverage = coverage->finish();
   return segments;
 }
 

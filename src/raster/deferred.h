@@ -16,6 +16,7 @@ struct DeferredLayers {
   bool center = true;
   bool conservative = false;  ///< only together with `center`
   int samples = 0;            ///< 0 for none; else 2, 4 or 8
+  bool coverage = false;      ///< exact area of the strands
 };
 
 /// The part of the picture that the selected bundles can reach, and the depths that they have there; a part of no size where

@@ -9,12 +9,14 @@
 #include <cstring>
 #include <vector>
 
+#include "assemble/assemble.h"
 #include "assemble/strand_block.h"
 #include "core/rng.h"
 #include "frame/camera_view.h"
 #include "kernel/scalar.h"
 #include "kit/hair_mesh_scene.h"
 #include "lod/bundle_lod.h"
+#include "raster/raster.h"
 
 namespace pelage {
 namespace {
@@ -272,6 +274,32 @@ TEST(DeferredRaster, OpaqueDepthHidesWhatLiesBehind) {
     before += !left && deferred::is_strand(open.buffer.conservative[p]);
   }
   EXPECT_GT(before, 500);
+}
+
+// The area of strands that are made on the fly is that of the same strands from memory.
+TEST(DeferredRaster, CoversWhatItsStrandsCover) {
+  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator(), 2, 5, 100));
+  Buffer<float> opaque(120 * 90);
+  for (std::size_t i = 0; i < opaque.size(); ++i) opaque[i] = i % 120 < 60 ? 0.6f : INFINITY;
+  const Drawn d = draw(scene, 120, 90, {.center = true, .coverage = true}, opaque);
+  expand_hair_meshes(scene);
+  scene.settings.subdivisions = 1;
+  GBuffer strands;
+  strands.opaque_depth.resize(opaque.size());
+  std::copy(opaque.begin(), opaque.end(), strands.opaque_depth.begin());
+  raster_strands(scene, d.view, number_segments(scene, d.view), {.center = false, .coverage = true}, strands);
+  double sum = 0, expected = 0;
+  for (int y = 0; y < 90; ++y)
+    for (int x = 0; x < 120; ++x) {
+      const auto at = static_cast<std::size_t>(y * 120 + x);
+      const int column = x - d.buffer.left, row = y - d.buffer.top, width = d.buffer.view.width;
+      const bool inside = column >= 0 && row >= 0 && column < width && row < d.buffer.view.height;
+      const float ours = inside ? d.buffer.coverage[static_cast<std::size_t>(row * width + column)] : 0;
+      EXPECT_NEAR(ours, analytic_coverage(strands, at), 1e-3f) << x << ", " << y;
+      sum += ours, expected += analytic_coverage(strands, at);
+    }
+  EXPECT_GT(expected, 50);
+  EXPECT_NEAR(sum, expected, 1e-3 * expected);
 }
 
 TEST(DeferredRaster, GroomsHaveCellsOfTheirOwn) {
