@@ -1,4 +1,6 @@
 // Whether a file is a hair mesh: known in every build, so that one without hair meshes can say what it lacks.
+#include <pelage/error.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -21,5 +23,11 @@ HairMeshFile hair_mesh_file(const ByteSource& source) {
   skip_blanks();
   return text.starts_with(kKey) ? HairMeshFile::kText : HairMeshFile::kNone;
 }
+
+#if !PELAGE_HAIRMESH
+std::string hair_mesh_schema() {
+  throw Error("hair mesh", "", "this build of Pelage has no hair meshes", "build it with -D PELAGE_HAIRMESH=ON");
+}
+#endif
 
 }  // namespace pelage::io
