@@ -175,7 +175,11 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw", "motion"}));
   verb.add_flag("--float", o.full_float, "EXR with 32 bits a channel instead of 16");
   verb.add_option("--subdivisions", o.subdivisions, "Segments per span; 0 chooses")->check(CLI::Range(0, 64));
-  verb.add_flag("--no-dual-scattering", o.no_dual_scattering, "Single scattering only");
+  verb.add_option("--environment-lighting", o.environment_lighting,
+                  "Environment on strands: pieces (16 lights with opacity maps), probe (prefiltered, no shadows)")
+      ->type_name("NAME");
+  verb.add_flag("--no-dual-scattering", o.no_dual_scattering,
+                "Single scattering only; with --model pelekis a Lambertian term stands for the rest");
   verb.add_option("--opacity-map", o.opacity_map_size, "Texels a side of a light's map")->check(CLI::Range(64, 4096));
 }
 

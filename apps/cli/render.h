@@ -20,7 +20,7 @@ struct RenderOptions {
   std::string input, gbuffer;
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
-  std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment;
+  std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment, environment_lighting;
   std::optional<float> kernel_size, kernel_radius, depth_sigma;
   std::optional<int> samples, frames, subdivisions, opacity_map_size;
   std::optional<float> exposure, fov, turn, orbit, width_scale, environment_rotation;

@@ -184,6 +184,10 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.subdivisions) s.subdivisions = *o.subdivisions;
   if (o.opacity_map_size) s.opacity_map_size = *o.opacity_map_size;
   if (o.no_shadows) s.shadows = false;
+  if (o.environment_lighting)
+    s.environment_lighting =
+        by_name<EnvironmentLighting>("--environment-lighting", *o.environment_lighting,
+                                     {{"pieces", EnvironmentLighting::kPieces}, {"probe", EnvironmentLighting::kProbe}});
   if (o.no_dual_scattering) s.dual_scattering = false;
   if (o.background && *o.background == "transparent") s.transparent_background = true;
   else if (o.background) s.background = vector("--background", *o.background), s.transparent_background = false;

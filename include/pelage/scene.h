@@ -147,6 +147,12 @@ enum class LinkAlpha {
   kNone,      ///< none: linked strands are as opaque as others, to see what alpha fix is worth
 };
 
+/// How the environment lights strands. Opaque surfaces have its irradiance either way.
+enum class EnvironmentLighting {
+  kPieces,  ///< as 16 directional lights, each with its own opacity map
+  kProbe,   ///< by prefiltered maps and spherical harmonics, without shadows but those of baked occlusion
+};
+
 /// Strand linking and its filter, of Method::kLink: the symbols of Huang 2025 (docs/methods.md).
 struct LinkSettings {
   bool link = true;           ///< false: only the filter
@@ -206,8 +212,9 @@ struct RenderSettings {
   bool transparent_background = false;   ///< keep alpha instead of the background
   int subdivisions = 0;                  ///< segments per span; 0 chooses from the projected curvature
   bool shadows = true;
-  bool dual_scattering = true;  ///< multiple scattering after Zinke 2008
-  int opacity_map_size = 1024;  ///< texels a side, 64…4096
+  std::optional<EnvironmentLighting> environment_lighting;  ///< none: what suits the method; see environment_lighting()
+  bool dual_scattering = true;                              ///< multiple scattering after Zinke 2008
+  int opacity_map_size = 1024;                              ///< texels a side, 64…4096
 };
 
 struct Scene {
@@ -225,6 +232,11 @@ struct Scene {
 void expand_hair_meshes(Scene& scene, const Progress& progress = {});
 /// Whether expand_hair_meshes() would do something.
 bool has_unmade_strands(const Scene& scene);
+
+/// How the environment lights the strands of a picture with these settings.
+inline EnvironmentLighting environment_lighting(const RenderSettings& settings) {
+  return settings.environment_lighting.value_or(EnvironmentLighting::kPieces);
+}
 
 /// Box of all grooms and meshes in world space.
 Bounds bounds(const Scene& scene);

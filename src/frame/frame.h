@@ -132,9 +132,15 @@ struct PreparedLight {
   ShadowMap shadow;           ///< empty when there is no mesh
 };
 
+/// The environment blurred by lobes of growing roughness (kernel/light/probe.h), each a map of the octahedron.
+struct EnvironmentProbe {
+  Buffer<float> texels;  ///< [kProbeLevels · 3 · (kProbeSide + 2)²] planes of R, G and B, W/(m²·sr); empty: no probe
+};
+
 /// All light of a scene.
 struct LightRig {
   std::vector<PreparedLight> lights;  ///< lights of the scene, then pieces of the environment
+  EnvironmentProbe probe;             ///< instead of pieces of the environment, where the settings ask for it
   std::array<Vec3, 9> irradiance{};   ///< environment on a diffuse surface by its normal, W/m²: real spherical harmonics
 };
 

@@ -161,8 +161,8 @@ std::vector<std::string> keys_of(const Names<Enum>& names) {
   return keys;
 }
 
-template <class T, class Enum>
-Field<T> choice_field(std::string key, const char* about, Enum T::*member, const Names<Enum>& names) {
+template <class T, class Member, class Enum>
+Field<T> choice_field(std::string key, const char* about, Member T::*member, const Names<Enum>& names) {
   const std::vector<std::string> keys = keys_of(names);
   return {std::move(key), {{"description", about}, {"enum", keys}}, [=](const JsonValue& v, T& out) {
             out.*member = names[choice_index(v, keys)].second;

@@ -300,6 +300,8 @@ const Fields<RenderSettings>& settings_fields() {
                                  {"tangent", View::kTangent},   {"depth", View::kDepth},        {"coverage", View::kCoverage},
                                  {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo},      {"motion", View::kMotion},
                                  {"linked", View::kLinked},     {"alpha", View::kLinkAlpha}};
+  static const Names<EnvironmentLighting> environments{{"pieces", EnvironmentLighting::kPieces},
+                                                       {"probe", EnvironmentLighting::kProbe}};
   static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};
   static const Fields<S> table{
       integer_field("width", "Pixels", &S::width, 1, 16384),
@@ -333,6 +335,8 @@ const Fields<RenderSettings>& settings_fields() {
       boolean_field("transparent_background", "Keep alpha instead of the background", &S::transparent_background),
       integer_field("subdivisions", "Segments per span; 0 chooses from the projected curvature", &S::subdivisions, 0, 64),
       boolean_field("shadows", "Whether hair and meshes shade", &S::shadows),
+      choice_field("environment_lighting", "Environment on strands: pieces with opacity maps, or a prefiltered probe",
+                   &S::environment_lighting, environments),
       boolean_field("dual_scattering", "Multiple scattering between strands", &S::dual_scattering),
       integer_field("opacity_map_size", "Texels a side", &S::opacity_map_size, 64, 4096),
   };

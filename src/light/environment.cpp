@@ -13,12 +13,6 @@ constexpr float kPi = 3.14159265f;
 /// The map is averaged down to this before anything is derived from it: pieces and harmonics need no more.
 constexpr int kWidth = 128, kHeight = 64;
 
-struct Texel {
-  Vec3 direction;
-  Vec3 power;       ///< radiance · solid angle
-  float luminance;  ///< of power
-};
-
 float luminance(Vec3 c) { return kernel::v_luminance(c); }
 
 /// Mean of the map over columns [x0, x1) and rows [y0, y1), at least one texel.
@@ -30,8 +24,10 @@ Vec3 map_mean(const Image& map, int x0, int x1, int y0, int y1) {
   return sum / static_cast<float>((x1 - x0) * (y1 - y0));
 }
 
-std::vector<Texel> reduced(const Environment& environment) {
-  std::vector<Texel> texels;
+}  // namespace
+
+std::vector<SkyTexel> sky_texels(const Environment& environment) {
+  std::vector<SkyTexel> texels;
   texels.reserve(kWidth * kHeight);
   for (int y = 0; y < kHeight; ++y) {
     const float top = static_cast<float>(y) / kHeight * kPi, bottom = static_cast<float>(y + 1) / kHeight * kPi;
@@ -46,11 +42,13 @@ std::vector<Texel> reduced(const Environment& environment) {
       const Vec3 power = max(radiance, {0, 0, 0}) * solid_angle;
       const Vec3 d =
           map_direction(environment, (static_cast<float>(x) + 0.5f) / kWidth, (static_cast<float>(y) + 0.5f) / kHeight);
-      texels.push_back({d, power, luminance(power)});
+      texels.push_back({d, power, luminance(power), solid_angle});
     }
   }
   return texels;
 }
+
+namespace {
 
 /// Texels [x0, x1) × [y0, y1) of the reduced map.
 struct Region {
@@ -58,19 +56,19 @@ struct Region {
 };
 
 template <class Body>
-void for_each_texel(const std::vector<Texel>& texels, const Region& r, const Body& body) {
+void for_each_texel(const std::vector<SkyTexel>& texels, const Region& r, const Body& body) {
   for (int y = r.y0; y < r.y1; ++y)
     for (int x = r.x0; x < r.x1; ++x) body(texels[static_cast<std::size_t>(y * kWidth + x)], x, y);
 }
 
 /// Splits across the longer side (columns shrink toward the poles) where both halves have the same power.
-std::pair<Region, Region> split(const std::vector<Texel>& texels, const Region& r) {
+std::pair<Region, Region> split(const std::vector<SkyTexel>& texels, const Region& r) {
   const float row = (static_cast<float>(r.y0 + r.y1) * 0.5f) / kHeight * kPi;
   const bool columns = static_cast<float>(r.x1 - r.x0) * std::sin(row) > static_cast<float>(r.y1 - r.y0);
   const int from = columns ? r.x0 : r.y0, to = columns ? r.x1 : r.y1;
   std::vector<double> line(static_cast<std::size_t>(to - from));
   double total = 0;
-  for_each_texel(texels, r, [&](const Texel& t, int x, int y) {
+  for_each_texel(texels, r, [&](const SkyTexel& t, int x, int y) {
     line[static_cast<std::size_t>((columns ? x : y) - from)] += static_cast<double>(t.luminance);
     total += static_cast<double>(t.luminance);
   });
@@ -86,11 +84,12 @@ std::pair<Region, Region> split(const std::vector<Texel>& texels, const Region& 
 
 /// Mean direction and spread of a region. Directions about an axis with a standard deviation σ on each of two axes have
 /// a mean of length 1 − σ² to first order.
-EnvironmentPiece summarize(const std::vector<Texel>& texels, const Region& r) {
+EnvironmentPiece summarize(const std::vector<SkyTexel>& texels, const Region& r) {
   Vec3 mean, power;
   float weight = 0;
-  for_each_texel(texels, r,
-                 [&](const Texel& t, int, int) { mean += t.direction * t.luminance, power += t.power, weight += t.luminance; });
+  for_each_texel(texels, r, [&](const SkyTexel& t, int, int) {
+    mean += t.direction * t.luminance, power += t.power, weight += t.luminance;
+  });
   if (!(weight > 0)) return {{0, 1, 0}, {0, 0, 0}, 0};
   const float resultant = length(mean) / weight;
   return {normalize(mean), power, std::sqrt(std::max(0.f, 1 - resultant))};
@@ -100,7 +99,7 @@ EnvironmentPiece summarize(const std::vector<Texel>& texels, const Region& r) {
 
 std::vector<EnvironmentPiece> cut_environment(const Environment& environment, int levels) {
   if (!(luminance(environment.radiance) > 0)) return {};
-  const std::vector<Texel> texels = reduced(environment);
+  const std::vector<SkyTexel> texels = sky_texels(environment);
   std::vector<Region> regions{{0, kWidth, 0, kHeight}};
   for (int level = 0; level < levels; ++level) {
     std::vector<Region> halves;
@@ -124,7 +123,7 @@ std::vector<EnvironmentPiece> cut_environment(const Environment& environment, in
 
 std::array<Vec3, 9> irradiance_harmonics(const Environment& environment) {
   std::array<Vec3, 9> c{};
-  for (const Texel& t : reduced(environment)) {
+  for (const SkyTexel& t : sky_texels(environment)) {
     const kernel::LightHarmonics h = kernel::light_harmonics(t.direction);
     const float y[9] = {h.c00, h.c1n, h.c10, h.c1p, h.c2nn, h.c2n, h.c20, h.c2p, h.c2pp};
     for (std::size_t i = 0; i < 9; ++i) {

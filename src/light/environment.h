@@ -16,6 +16,17 @@ struct EnvironmentPiece {
   float spread;     ///< radians, standard deviation of its directions about `from`, per axis
 };
 
+/// A piece of the sky as small as anything here looks at it.
+struct SkyTexel {
+  Vec3 direction;     ///< unit length
+  Vec3 power;         ///< radiance · solid angle
+  float luminance;    ///< of power
+  float solid_angle;  ///< steradians; their sum is 4π
+};
+
+/// The environment averaged down to 128 × 64 texels, row by row from straight up. Negative radiance counts as none.
+std::vector<SkyTexel> sky_texels(const Environment& environment);
+
 /// Cuts the environment into 2^levels regions of about equal power: median cut (Debevec 2005; references.bib:
 /// Debevec2005MedianCut). Bright small sources get small pieces, an even sky even ones. Black pieces are left out.
 std::vector<EnvironmentPiece> cut_environment(const Environment& environment, int levels);

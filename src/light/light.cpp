@@ -5,6 +5,7 @@
 #include "light/environment.h"
 #include "light/light_view.h"
 #include "light/opacity_map.h"
+#include "light/probe.h"
 #include "light/shadow_map.h"
 #include "light/strand_lines.h"
 
@@ -65,6 +66,22 @@ void prepare(std::vector<PreparedLight> group, const MapJob& job, LightRig& rig)
   for (std::size_t i = 0; i < maps.size(); ++i) rig.lights[owners[i]].opacity = std::move(maps[i]);
 }
 
+/// The environment as directional lights with a spread.
+void prepare_environment(MapJob job, LightRig& rig) {
+  job.size = std::min(kEnvironmentMapSize, job.scene.settings.opacity_map_size);
+  job.strand_stride = stride_for(job.scene, kEnvironmentStrands);
+  std::vector<PreparedLight> group;
+  for (const EnvironmentPiece& piece : cut_environment(job.scene.environment, kEnvironmentLevels)) {
+    PreparedLight& prepared = group.emplace_back();
+    prepared.light.type = Light::Type::kDirectional;
+    prepared.light.name = "environment";
+    prepared.light.direction = -piece.from;
+    prepared.light.intensity = piece.irradiance;
+    prepared.spread = piece.spread;
+  }
+  prepare(std::move(group), job, rig);
+}
+
 }  // namespace
 
 LightRig prepare_lights(const Scene& scene, const MeshTracer& meshes) {
@@ -84,24 +101,14 @@ LightRig prepare_lights(const Scene& scene, const MeshTracer& meshes) {
   }
   prepare(std::move(group), job, rig);
 
-  job.size = std::min(kEnvironmentMapSize, scene.settings.opacity_map_size);
-  job.strand_stride = stride_for(scene, kEnvironmentStrands);
-  group.clear();
-  for (const EnvironmentPiece& piece : cut_environment(scene.environment, kEnvironmentLevels)) {
-    PreparedLight& prepared = group.emplace_back();
-    prepared.light.type = Light::Type::kDirectional;
-    prepared.light.name = "environment";
-    prepared.light.direction = -piece.from;
-    prepared.light.intensity = piece.irradiance;
-    prepared.spread = piece.spread;
-  }
-  prepare(std::move(group), job, rig);
+  if (environment_lighting(scene.settings) == EnvironmentLighting::kProbe) rig.probe = make_probe(scene.environment);
+  else prepare_environment(job, rig);
   rig.irradiance = irradiance_harmonics(scene.environment);
   return rig;
 }
 
 std::size_t resident_bytes(const LightRig& rig) {
-  std::size_t total = 0;
+  std::size_t total = rig.probe.texels.bytes();
   for (const PreparedLight& l : rig.lights)
     total += l.opacity.first_depth.bytes() + l.opacity.crossings.bytes() + l.shadow.depth.bytes();
   return total;

@@ -38,8 +38,9 @@ MapConstants shadow_constants(const ShadowMap& map) {
 }  // namespace
 
 void pad(ShadeBatch& batch) {
-  for (ShadeBatch::Lanes* lanes : {&batch.px, &batch.py, &batch.pz, &batch.tx, &batch.ty, &batch.tz, &batch.ex, &batch.ey,
-                                   &batch.ez, &batch.absorb_r, &batch.absorb_g, &batch.absorb_b, &batch.depth_shift})
+  for (ShadeBatch::Lanes* lanes :
+       {&batch.px, &batch.py, &batch.pz, &batch.tx, &batch.ty, &batch.tz, &batch.ex, &batch.ey, &batch.ez, &batch.absorb_r,
+        &batch.absorb_g, &batch.absorb_b, &batch.depth_shift, &batch.occlusion})
     std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
 }
 
@@ -60,11 +61,19 @@ std::vector<LightConstants> light_constants(const LightRig& rig) {
   return all;
 }
 
+ProbeConstants probe_constants(const LightRig& rig) {
+  return {rig.probe.texels.empty() ? nullptr : rig.probe.texels.data(), rig.irradiance};
+}
+
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig) {
   using Model = HairMaterial::Model;
   const bool dual = dual_scattering && material.model != Model::kKajiyaKay;
   const bool tabulated = dual && material.model != Model::kSadeghi;
-  return {material, make_artist_fiber(material), dual, light_constants(rig),
+  return {material,
+          make_artist_fiber(material),
+          dual,
+          light_constants(rig),
+          probe_constants(rig),
           tabulated ? make_forward_attenuation_table(material) : ForwardAttenuationTable{}};
 }
 

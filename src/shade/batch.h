@@ -25,7 +25,16 @@ struct ShadeBatch {
   alignas(64) Lanes ex, ey, ez;                    ///< direction to the eye, unit length
   alignas(64) Lanes absorb_r, absorb_g, absorb_b;  ///< per fiber radius
   alignas(64) Lanes depth_shift{};                 ///< strands between it and every light that are not there after all
-  alignas(64) Lanes r, g, b;                       ///< result: radiance, W/(m²·sr)
+  /// share of the probe's light that arrives, 0…1; 1 where none is baked
+  alignas(64) Lanes occlusion = ones();
+  alignas(64) Lanes r, g, b;  ///< result: radiance, W/(m²·sr)
+
+ private:
+  static Lanes ones() {
+    Lanes lanes;
+    lanes.fill(1);
+    return lanes;
+  }
 };
 
 /// Copies lane 0 behind the last one, so that whole vectors see valid numbers.
@@ -54,12 +63,19 @@ struct LightConstants {
   MapConstants opacity, shadow;
 };
 
+/// The environment by its probe, as plain numbers and pointers that outlive the evaluation.
+struct ProbeConstants {
+  const float* texels = nullptr;  ///< EnvironmentProbe::texels; null: pieces among the lights stand for the environment
+  std::array<Vec3, 9> irradiance{};
+};
+
 /// What all evaluations of a groom share.
 struct ShadeConstants {
   HairMaterial material;
   kernel::ScatterArtistFiber artist;  ///< of kSadeghi
   bool dual_scattering = true;
   std::vector<LightConstants> lights;
+  ProbeConstants probe;
   ForwardAttenuationTable attenuation;  ///< of the material; empty without dual scattering, and of kSadeghi
 };
 
@@ -67,6 +83,7 @@ struct ShadeConstants {
 inline constexpr float kWideSpread = 0.25f;
 
 std::vector<LightConstants> light_constants(const LightRig& rig);
+ProbeConstants probe_constants(const LightRig& rig);
 /// Makes the material's table where dual scattering is on and the model needs one: Kajiya-Kay does not know it, Sadeghi's
 /// lobes do not depend on the inclination.
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig);

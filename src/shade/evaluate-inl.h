@@ -104,7 +104,7 @@ struct ShadePlace {
   ScatterFiber fiber;
   ScatterLobes lobes;        // of Marschner's kinds of lobes
   ScatterArtist artist;      // of Sadeghi's
-  ScatterPelekis pelekis;    // of Pelekis'
+  ScatterPelekis pelekis;    // of Pelekis', and of the probe's light on any
   ScatterAverages averages;  // with dual scattering
   ScatterBack back;          //
   Vec3 tuft_color;           // of what has a diffuse lobe
@@ -144,13 +144,14 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
                           Float(material.cuticle_tilt), Float(material.specular_gain), absorption);
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
   s.depth_shift = load(batch.depth_shift.data() + i);
+  const bool probe = k.probe.texels != nullptr;
   const bool diffuse = material.model == HairMaterial::Model::kKajiyaKay || material.model == HairMaterial::Model::kPelekis;
-  if (diffuse && !k.dual_scattering) s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
+  if (probe || (diffuse && !k.dual_scattering)) s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
+  if (probe || material.model == HairMaterial::Model::kPelekis) s.pelekis = scatter_prepare_pelekis(s.fiber, sin_o, cos_o);
   if (material.model == HairMaterial::Model::kSadeghi) {
     s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), scatter_crossing_color(absorption), sin_o, cos_o);
     if (k.dual_scattering) s.averages = scatter_averages_sadeghi(s.artist);
   } else if (material.model == HairMaterial::Model::kPelekis) {
-    s.pelekis = scatter_prepare_pelekis(s.fiber, sin_o, cos_o);
     if (k.dual_scattering) s.averages = scatter_averages_pelekis(s.pelekis);
   } else {
     s.lobes = shade_lobes(material.model, s.fiber, sin_o, cos_o);
@@ -264,12 +265,51 @@ PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, c
   return arriving * (direct + local + forwarded * scatter_dual_transmittance(n, a_f));
 }
 
+// Prefiltered radiance about a direction; see probe_radiance().
+PELAGE_LANES_FN Vec3 shade_prefiltered(const ProbeConstants& probe, Vec3 d, Float alpha) {
+  const auto row = static_cast<std::int32_t>(kProbeSide) + 2, plane_size = row * row;
+  const LightProbeCell c = light_probe_cell(d, alpha);
+  const Int corner = to_int(c.level) * Int(3 * plane_size) + to_int(c.y) * Int(row) + to_int(c.x);
+  const auto channel = [&](int plane) {
+    const float* v = probe.texels + plane * plane_size;
+    return light_probe_mix(c, gather(v, corner), gather(v + 1, corner), gather(v + row, corner), gather(v + row + 1, corner));
+  };
+  const Vec3 lower(channel(0), channel(1), channel(2)), upper(channel(3), channel(4), channel(5));
+  return lower * c.sharper + upper * (Float(1.0f) - c.sharper);
+}
+
+// Irradiance by a normal; see environment_irradiance().
+PELAGE_LANES_FN Vec3 shade_irradiance(const ProbeConstants& probe, Vec3 normal) {
+  const LightHarmonics h = light_harmonics(normal);
+  const Float y[9] = {h.c00, h.c1n, h.c10, h.c1p, h.c2nn, h.c2n, h.c20, h.c2p, h.c2pp};
+  Vec3 sum(Float(0.0f), Float(0.0f), Float(0.0f));
+  for (std::size_t i = 0; i < 9; ++i) sum = sum + splat(probe.irradiance[i]) * y[i];
+  const Float none(0.0f);
+  return Vec3(max(sum.x, none), max(sum.y, none), max(sum.z, none));
+}
+
+// Light of the probe on one lobe; `even`: mean radiance of the whole sky.
+PELAGE_LANES_FN Vec3 shade_glow(const ProbeConstants& probe, const ShadePlace& s, ScatterGlow g, Vec3 even) {
+  const Vec3 axis = s.across_o * g.axis.x + s.tangent * g.axis.y;
+  return g.energy * (shade_prefiltered(probe, axis, g.alpha) * (Float(1.0f) - g.even) + even * g.even);
+}
+
+// The environment by its probe: R and TRT by a lobe, TT by another, what remains evenly, and what other fibers scatter by the
+// irradiance of a normal that faces the eye (Lipp 2026, section 3.4). The same for every model: Pelekis' lobes stand for it.
+PELAGE_LANES_FN Vec3 shade_probe(const ProbeConstants& probe, const ShadePlace& s) {
+  const ScatterGlows g = scatter_glows(s.pelekis);
+  const Vec3 even = splat(probe.irradiance[0] * (0.282094792f / kLightCosineBand0));
+  const Vec3 diffused = s.tuft_color * shade_irradiance(probe, s.across_o) * Float(kPelekisDiffused * kInvPi);
+  return shade_glow(probe, s, g.front, even) + shade_glow(probe, s, g.back, even) + s.pelekis.a_rest * even + diffused;
+}
+
 // Fills r, g, b of the batch.
 PELAGE_LANES_FN void shade_evaluate(const ShadeConstants& k, ShadeBatch& batch) {
   for (std::size_t i = 0; i < batch.count; i += static_cast<std::size_t>(lanes())) {
     const ShadePlace s = shade_place(k, batch, i);
     Vec3 sum(Float(0.0f), Float(0.0f), Float(0.0f));
     for (const LightConstants& light : k.lights) sum = sum + shade_under(k, s, light);
+    if (k.probe.texels != nullptr) sum = sum + shade_probe(k.probe, s) * load(batch.occlusion.data() + i);
     store(sum.x, batch.r.data() + i), store(sum.y, batch.g.data() + i), store(sum.z, batch.b.data() + i);
   }
 }

@@ -10,6 +10,7 @@
 
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "frame/environment_map.h"
 #include "frame/fiber.h"
 #include "frame/light_lookup.h"
 #include "frame/segment_lookup.h"
@@ -22,6 +23,9 @@
 namespace pelage {
 namespace {
 
+constexpr HairMaterial::Model kModels[] = {HairMaterial::Model::kKajiyaKay, HairMaterial::Model::kMarschner,
+                                           HairMaterial::Model::kZhu,       HairMaterial::Model::kChiang,
+                                           HairMaterial::Model::kSadeghi,   HairMaterial::Model::kPelekis};
 constexpr std::array<Vec2, 1> kMiddle{Vec2(0.5f, 0.5f)};
 
 StrandSet linear(const std::vector<std::array<Vec3, 2>>& lines, float width) {
@@ -189,6 +193,7 @@ ShadeBatch random_batch() {
     batch.px[i] = around(), batch.py[i] = around(), batch.pz[i] = around();
     batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
     batch.ex[i] = eye.x, batch.ey[i] = eye.y, batch.ez[i] = eye.z;
+    batch.occlusion[i] = 1 - 0.5f * rng.uniform();
     batch.absorb_r[i] = rng.uniform(), batch.absorb_g[i] = rng.uniform(), batch.absorb_b[i] = rng.uniform();
   }
   return batch;
@@ -212,12 +217,128 @@ void expect_wide_equals_scalar(const ShadeConstants& constants) {
 }
 
 TEST(Shade, WideEqualsScalar) {
-  for (const auto model : {HairMaterial::Model::kKajiyaKay, HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu,
-                           HairMaterial::Model::kChiang, HairMaterial::Model::kSadeghi, HairMaterial::Model::kPelekis}) {
+  for (const auto model : kModels) {
     const Scene scene = thicket(model);
     const LightRig rig = prepare_lights(scene, MeshTracer({}));
     for (const bool dual : {true, false}) expect_wide_equals_scalar(shade_constants(scene.grooms[0].material, dual, rig));
   }
+}
+
+/// Strands under a map alone, by its probe.
+ShadeConstants under_probe(const HairMaterial& material, const Scene& scene) {
+  static LightRig rig;  // the constants point into it
+  rig = prepare_lights(scene, MeshTracer({}));
+  EXPECT_TRUE(rig.lights.empty());
+  return shade_constants(material, false, rig);
+}
+
+/// What a strand makes of a sky, by sums over all directions.
+struct SkySums {
+  Vec3 single;      ///< Pelekis' lobes
+  Vec3 facing;      ///< the Lambertian term by the irradiance of the normal that faces the eye
+  Vec3 lambertian;  ///< the Lambertian term itself
+};
+SkySums summed_over_sky(const HairMaterial& material, const Environment& sky, Vec3 tangent, Vec3 to_eye, Vec3 absorption) {
+  const float sin_o = dot(tangent, to_eye), cos_o = std::sqrt(std::max(0.f, 1 - sin_o * sin_o));
+  const Vec3 across = normalize(to_eye - tangent * sin_o), side = cross(tangent, across);
+  const kernel::ScatterPelekis l =
+      kernel::scatter_prepare_pelekis(kernel::scatter_fiber(material.eta, material.beta_longitudinal, material.beta_azimuthal,
+                                                            material.cuticle_tilt, material.specular_gain, absorption),
+                                      sin_o, cos_o);
+  const Vec3 tuft = kernel::scatter_tuft_color(absorption, material.beta_azimuthal);
+  constexpr int kSines = 120, kAzimuths = 72;
+  constexpr float kArea = 4 * 3.14159265f / (kSines * kAzimuths);
+  SkySums sum{};
+  for (int i = 0; i < kSines; ++i) {
+    const float s = 2 * (static_cast<float>(i) + 0.5f) / kSines - 1, c = std::sqrt(1 - s * s);
+    for (int j = 0; j < kAzimuths; ++j) {
+      const float phi = (static_cast<float>(j) + 0.5f) / kAzimuths * 6.2831853f, x = c * std::cos(phi);
+      const Vec3 light = environment_radiance(sky, tangent * s + across * x + side * (c * std::sin(phi))) * kArea;
+      sum.single += light * kernel::scatter_pelekis(l, s, std::cos(phi));
+      sum.facing += light * tuft * (kernel::kPelekisDiffused * std::max(x, 0.f) / 3.14159265f);
+      sum.lambertian += light * kernel::scatter_pelekis_diffused(tuft, c);
+    }
+  }
+  return sum;
+}
+
+Scene under_sky(std::shared_ptr<const Image> map) {
+  Scene scene = thicket(HairMaterial::Model::kPelekis);
+  scene.lights.clear();
+  scene.environment.radiance = {1, 1, 1}, scene.environment.map = std::move(map);
+  scene.settings.environment_lighting = EnvironmentLighting::kProbe;
+  return scene;
+}
+
+/// Bright above the horizon, black below.
+std::shared_ptr<const Image> half_bright() {
+  auto map = std::make_shared<Image>(128, 64, std::vector<std::string>{"R", "G", "B"});
+  std::fill(map->pixels.begin(), map->pixels.begin() + static_cast<std::ptrdiff_t>(map->pixels.size() / 2), 1.f);
+  return map;
+}
+
+TEST(ShadeProbe, AnEvenSkyIsExact) {
+  const Scene scene = under_sky(nullptr);
+  const HairMaterial& material = scene.grooms[0].material;
+  ShadeBatch batch = random_batch();
+  evaluate_scalar(under_probe(material, scene), batch);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const SkySums sums =
+        summed_over_sky(material, scene.environment, {batch.tx[i], batch.ty[i], batch.tz[i]},
+                        {batch.ex[i], batch.ey[i], batch.ez[i]}, {batch.absorb_r[i], batch.absorb_g[i], batch.absorb_b[i]});
+    const Vec3 expected = sums.single + sums.lambertian;
+    EXPECT_NEAR(batch.r[i], batch.occlusion[i] * expected.x, 4e-3f * expected.x) << i;
+    EXPECT_NEAR(batch.b[i], batch.occlusion[i] * expected.z, 4e-3f * expected.z) << i;
+  }
+}
+
+// RMS over the directions of strand and eye, over the mean of what the fiber itself scatters.
+TEST(ShadeProbe, AOneSidedSkyWithinItsBound) {
+  Scene scene = under_sky(half_bright());
+  HairMaterial& material = scene.grooms[0].material;
+  double worst = 0;
+  for (const float beta_m : {0.06f, 0.13f, 0.25f}) {
+    material.beta_longitudinal = beta_m;
+    const ShadeConstants constants = under_probe(material, scene);
+    for (const float sigma_a : {0.02f, 0.3f, 2.f}) {
+      ShadeBatch batch = random_batch();
+      batch.absorb_r.fill(sigma_a), batch.absorb_g.fill(sigma_a), batch.absorb_b.fill(sigma_a), batch.occlusion.fill(1);
+      evaluate_scalar(constants, batch);
+      double square = 0, mean = 0, bias = 0, turned = 0;
+      for (std::size_t i = 0; i < batch.count; ++i) {
+        const SkySums sums = summed_over_sky(material, scene.environment, {batch.tx[i], batch.ty[i], batch.tz[i]},
+                                             {batch.ex[i], batch.ey[i], batch.ez[i]}, kernel::v_splat(sigma_a));
+        const double error = static_cast<double>(batch.g[i] - sums.facing.y - sums.single.y);
+        const double facing = static_cast<double>(sums.facing.y - sums.lambertian.y);
+        square += error * error, bias += error, turned += facing * facing, mean += static_cast<double>(sums.single.y);
+      }
+      const double count = static_cast<double>(batch.count), error = std::sqrt(square / count) / (mean / count);
+      EXPECT_LE(error, static_cast<double>(kernel::kGlowMaxRelError)) << beta_m << " " << sigma_a;
+      std::printf("half-bright sky, beta_m %.2f, sigma_a %.2f: error %.3f of the mean, bias %+.3f; facing the eye adds %.3f\n",
+                  static_cast<double>(beta_m), static_cast<double>(sigma_a), error, bias / mean,
+                  std::sqrt(turned / count) / (mean / count));
+      worst = std::max(worst, error);
+    }
+  }
+  EXPECT_GT(worst, 0);
+}
+
+TEST(ShadeProbe, WideEqualsScalarForEveryModel) {
+  for (const auto model : kModels) {
+    Scene scene = under_sky(half_bright());
+    scene.grooms[0].material.model = model;
+    scene.lights = {directional({0.3f, -1, -0.5f}, {3, 3, 2})};
+    const LightRig rig = prepare_lights(scene, MeshTracer({}));
+    for (const bool dual : {true, false}) expect_wide_equals_scalar(shade_constants(scene.grooms[0].material, dual, rig));
+  }
+}
+
+// Of the whole stage: strands that no light reaches but the probe's.
+TEST(ShadeProbe, LightsWhatIsVisible) {
+  const Scene scene = under_sky(nullptr);
+  const Radiance r = shade_all(scene, random_gbuffer(scene, 1));
+  ASSERT_GT(r.color.size(), 10u);
+  for (const Vec3 c : r.color) EXPECT_GT(c.x, 0.2f);
 }
 
 TEST(Shade, DirectLightFadesWithTheCrossingsOfTheOpacityMap) {

@@ -138,3 +138,11 @@ PELAGE_FN Vec4 parity_draw_pelekis(ScatterPelekis l, Vec4 u) {
   ScatterDirection d = scatter_sample_pelekis(l, c, u);
   return parity_drawn(d, scatter_pdf_pelekis(l, c, d.sin_i, d.phi));
 }
+PELAGE_FN Vec4 parity_glow(ScatterGlow g) { return Vec4(g.energy.x, g.axis.x, g.axis.y, g.alpha + g.even); }
+// On maps that are linear in place and level, so that a cell chosen differently at an edge gives the same value.
+PELAGE_FN Float parity_probe(Vec3 d, Float alpha) {
+  LightProbeCell c = light_probe_cell(d, alpha);
+  Float v = Float(0.05f) * c.x - Float(0.02f) * c.y + Float(0.3f) * c.level;
+  Float lower = light_probe_mix(c, v, v + Float(0.05f), v - Float(0.02f), v + Float(0.03f));
+  return lower * c.sharper + (lower + Float(0.3f)) * (Float(1.0f) - c.sharper);
+}
