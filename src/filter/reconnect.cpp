@@ -159,10 +159,11 @@ class Reconnecter {
     return {cell, depth, sign * per_pixel / (buffer_.range.far_end - buffer_.range.near_end)};
   }
 
-  /// compare: whether the term of color counts. nearby: whether hits count only where they are as deep.
+  /// compare: whether the term of color counts. nearby: whether only what is as deep counts, hits and colors: for a strand that
+  /// is laid over another one.
   Gathered gather(const ScreenStrand& s, std::size_t middle, bool compare, bool nearby) const {
     Gathered g;
-    const float tolerance = settings_.depth_tolerance;
+    const float tolerance = nearby ? settings_.connect_depth : settings_.depth_tolerance;
     for (const TapTable::StripTap& tap : taps_.strip(s.cell)) {
       const std::size_t q = middle + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(tap.offset));
       const float expected = s.depth + s.slope * tap.along, center = padded_.center[q], touched = padded_.touched[q];

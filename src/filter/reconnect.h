@@ -13,7 +13,8 @@ namespace pelage {
 ///
 /// A pixel whose center is hit takes the mean of its neighbors under a kernel that lies along its strand (eq. 9 and 10); one that is
 /// only touched borrows color from neighbors whose centers are hit; where what touches it lies in front of what its center
-/// shows, the one is laid over the other. Neighbors count that are as deep as the strand would be there. Opacity is the share of
+/// shows, the one is laid over the other. Neighbors count that are as deep as the strand would be there, by `depth_tolerance`, and by
+/// `connect_depth` for a strand that is laid over another. Opacity is the share of
 /// center hits among all hits in a strip along the strand; where the pixel's own hit stands behind another strand, it is opaque.
 /// `coverage`, where not empty, [h·w] 0…1, takes the place of that share.
 /// Deterministic. O(pixels with hair · taps), in parallel.
