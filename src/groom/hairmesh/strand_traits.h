@@ -23,7 +23,7 @@ struct StrandTraits {
   alignas(64) Lanes tip_width;                         ///< as a share of the root's
 };
 
-/// Place in the bundle of its strand number `strand`: the R2 sequence (Roberts 2018), from a random start. Every prefix of it is
+/// Place in the bundle of its strand number `strand`: the R2 sequence (Roberts2018Quasirandom), from a random start. Every prefix of it is
 /// spread evenly.
 Vec2 strand_place(const HairMesh::Bundle& bundle, std::uint32_t strand);
 
