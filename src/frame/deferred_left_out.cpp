@@ -9,6 +9,7 @@ DeferredGrooms prepare_deferred(const Scene&) {
   throw Error("settings", "method", "this build of Pelage has no hair meshes, which method swr draws",
               "build it with -D PELAGE_HAIRMESH=ON, or use another method");
 }
+DeferredMaterials::DeferredMaterials(const Scene&, std::span<const DeferredGroom>, const LightRig&) {}
 Scene light_stand_in(const Scene& scene) { return scene; }
 Image render_deferred(const FrameInputs&, const DeferredGrooms&, Stages&) { return {}; }
 
