@@ -33,6 +33,9 @@ for style in "${hair[@]}"; do
   picture "${style%:*}" "out/${style%:*}.pelage" --mesh out/head.obj --hair "${style#*:}"
 done
 
+say grow curls --hair-mesh -o out/curls.hairmesh
+picture curls-hairmesh out/curls.hairmesh --method swr
+
 sintel=$data/grooms/SintelHairOriginal-sintel_hair.16points.tfx
 if [ -f "$sintel" ]; then
   picture sintel "$sintel" --mesh "$data/meshes/sintel.obj" --mesh "$data/meshes/sintel-eyes.obj" --hair red

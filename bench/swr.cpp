@@ -11,6 +11,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <string>
 
 #include "bench.h"
 #include "composite/composite.h"
@@ -163,10 +164,32 @@ Workload quality_workload(const Distance& distance, const Kind& kind, bool lod, 
               }};
 }
 
+/// Eq. 1 and 2 once more, bundle by bundle, in doubles: what level of detail chose.
+std::string check_selection(const Input& in) {
+  const CameraView view = make_camera_view(in.scene.camera, 1920, 1080);
+  const PreparedHairMesh& prepared = *in.grooms.meshes[0].mesh;
+  for (const BundleDraw& draw : select_lod(in.scene, in.grooms.meshes, view).bundles) {
+    const HairMesh::Bundle& bundle = prepared.mesh->bundles[draw.bundle];
+    double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
+    for (const std::uint32_t column : bundle.columns)
+      for (std::uint32_t v = prepared.mesh->column_offsets[column]; v < prepared.mesh->column_offsets[column + 1]; ++v) {
+        const Vec2 at = project(view, transform_point(view.world_to_camera, prepared.mesh->positions[v]));
+        low[0] = std::fmin(low[0], at.x), low[1] = std::fmin(low[1], at.y);
+        high[0] = std::fmax(high[0], at.x), high[1] = std::fmax(high[1], at.y);
+      }
+    const double size = std::hypot(high[0] - low[0], high[1] - low[1]) / view.height * in.scene.grooms[0].lod_lambda;
+    const double wanted = std::fmin(size, 1) * (bundle.strands + static_cast<double>(prepared.stagger[draw.bundle]));
+    if (std::fabs(std::fmin(wanted, bundle.strands) - draw.strands) > 1.01)
+      return "a bundle of " + std::to_string(bundle.strands) + " has " + std::to_string(draw.strands) + " strands, not " +
+             std::to_string(wanted);
+  }
+  return "";
+}
+
 /// Share of the strands that level of detail draws.
 Workload strands_workload(const Distance& distance) {
   auto in = input_at(distance.pixels);
-  return {.check = [] { return std::string(); },
+  return {.check = [in] { return check_selection(*in); },
           .measure =
               [in] {
                 HairWork work;
@@ -177,7 +200,7 @@ Workload strands_workload(const Distance& distance) {
 
 Workload prepass_workload(const Distance& distance) {
   auto in = input_at(distance.pixels);
-  return {.check = [] { return std::string(); },
+  return {.check = [in] { return check_selection(*in); },
           .run = [in] { select_lod(in->scene, in->grooms.meshes, make_camera_view(in->scene.camera, 1920, 1080)); }};
 }
 

@@ -18,7 +18,7 @@ std::uint64_t peak_resident_bytes() {
 std::uint64_t control_points(const Scene& scene) {
   std::uint64_t points = 0;
   for (const GroomInstance& groom : scene.grooms)
-    points += groom.strands ? groom.strands->point_count() : groom.hair_mesh->vertex_count();
+    if (groom.strands) points += groom.strands->point_count();  // those of hair meshes are never in memory
   return points;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <pelage/error.h>
 #include <pelage/grow.h>
+#include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
 
 #include <algorithm>
@@ -97,12 +98,6 @@ void apply_hair_color(const std::string& name, HairMaterial& m) {
   else m.color = hair.tuft;
 }
 
-/// Whether the mannequin belongs below the groom.
-bool grown_on_mannequin(const GroomInstance& groom) {
-  if (groom.strands) return pelage::grown_on_mannequin(*groom.strands);
-  return pelage::grown_on_mannequin(expand(*groom.hair_mesh, {.points = 17, .share = 0.01f}));
-}
-
 void read_groom_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes, Scene& scene) {
   ImportReport report;
   GroomInstance& groom = scene.grooms.emplace_back();
@@ -117,7 +112,8 @@ void read_groom_scene(const RenderOptions& options, const Progress& progress, st
   // Meshes that belong to a groom come in its units and axes.
   for (const std::string& path : options.meshes)
     scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(read_mesh(path, report.scale, report.up));
-  if (options.meshes.empty() && !options.no_head && grown_on_mannequin(groom)) {
+  if (options.meshes.empty() && !options.no_head &&
+      (groom.hair_mesh ? grown_on_mannequin(*groom.hair_mesh) : grown_on_mannequin(*groom.strands))) {
     scene.meshes.emplace_back().mesh = std::make_shared<TriangleMesh>(mannequin_head());
     notes.push_back("with the mannequin it was grown on; --no-head leaves it away");
   }

@@ -32,6 +32,10 @@ HairMeshStyle hair_mesh_style_from_name(const std::string& name);  ///< throws E
 /// The same bits for any thread count.
 HairMesh make_hair_mesh(const HairMeshSettings& settings = {}, const Progress& progress = {});
 
+/// Whether `mesh` stands on the scalp of mannequin_head(), as make_hair_mesh() and a fit to hair grown there leave it. Quads of a
+/// cage cut corners: roots count within 9 mm of the skin and 12 mm of the hairline, and one in twenty may lie elsewhere.
+bool grown_on_mannequin(const HairMesh& mesh);
+
 /// Fills `mesh.occlusion`: the share of light from all directions that reaches each vertex through the groom, taken as a cloud
 /// of as much hair as the strands put there. The head and other meshes do not count. The same bits for any thread count.
 ///

@@ -12,6 +12,7 @@
 #include "filter/matte.h"
 #include "filter/reconnect_taps.h"
 #include "frame/camera_view.h"
+#include "frame/reproject.h"
 
 namespace pelage {
 namespace {
@@ -143,9 +144,8 @@ class Reconnecter {
  private:
   ScreenStrand strand(PixelKey key, int x, int y) const {
     const CameraView& v = buffer_.view;
-    const float z = buffer_.range.metres(deferred::depth_level(key)), scale = (v.perspective ? z : 1.f) / v.focal;
-    const Vec3 place((static_cast<float>(x) + 0.5f - v.center_x) * scale, (static_cast<float>(y) + 0.5f - v.center_y) * scale,
-                     z);
+    const float z = buffer_.range.metres(deferred::depth_level(key));
+    const Vec3 place = unproject(v, {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, z);
     const Vec3 along = transform_vector(v.world_to_camera, deferred::tangent(key));
     const Vec2 on_screen = project_direction(v, place, along);
     const float pixels = length(on_screen);
@@ -155,7 +155,7 @@ class Reconnecter {
     const int cell = DirectionCells::cell_of(MeanDirection::doubled(t));
     const float sign = dot(t, DirectionCells::middle(cell)) < 0 ? -1.f : 1.f;
     // No steeper than a pixel for a pixel: what is seen nearly end-on is short.
-    const float steepest = scale, per_pixel = std::clamp(along.z / pixels, -steepest, steepest);
+    const float steepest = 1 / pixels_per_metre(v, z), per_pixel = std::clamp(along.z / pixels, -steepest, steepest);
     return {cell, depth, sign * per_pixel / (buffer_.range.far_end - buffer_.range.near_end)};
   }
 

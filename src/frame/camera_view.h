@@ -31,6 +31,12 @@ inline Vec2 project(const CameraView& view, Vec3 c) {
   return {view.center_x + scale * c.x, view.center_y + scale * c.y};
 }
 
+/// Unit direction from a point of the world to the eye.
+inline Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
+  if (view.perspective) return normalize(transform_point(view.camera_to_world, {0, 0, 0}) - position);
+  return normalize(transform_vector(view.camera_to_world, {0, 0, -1}));
+}
+
 /// Where something at `c` that moves along `v`, both in camera space, moves on the screen: pixels per length of v.
 inline Vec2 project_direction(const CameraView& view, Vec3 c, Vec3 v) {
   const float scale = pixels_per_metre(view, c.z);

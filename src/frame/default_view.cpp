@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/bounds.h"
+
 namespace pelage {
 namespace {
 
@@ -13,9 +15,7 @@ constexpr float radians(float degrees) { return degrees * kPi / 180; }
 Bounds transformed(const Bounds& box, const Affine& transform) {
   Bounds result;
   if (box.empty()) return result;
-  for (int corner = 0; corner < 8; ++corner)
-    result.extend(transform_point(transform, {corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                                              corner & 4 ? box.upper.z : box.lower.z}));
+  for (const Vec3 corner : corners(box)) result.extend(transform_point(transform, corner));
   return result;
 }
 

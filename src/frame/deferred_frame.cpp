@@ -41,6 +41,8 @@ DeferredGrooms prepare_deferred(const Scene& scene) {
       throw Error("scene", groom.name, "method swr draws hair meshes, and this groom is none",
                   "make one from it with `pelage fit hairmesh`, or use another method");
     validate(*groom.hair_mesh, groom.name);
+    if (!(groom.lod_lambda >= 0.01f && groom.lod_lambda <= 1000))
+      throw Error("scene", groom.name, fmt::format("lod_lambda {} is out of range", groom.lod_lambda), "0.01…1000");
     grooms.meshes.push_back({g, std::make_shared<const PreparedHairMesh>(groom.hair_mesh)});
   }
   return grooms;

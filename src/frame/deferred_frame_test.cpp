@@ -93,6 +93,9 @@ TEST(DeferredFrame, SaysWhatItCannotDraw) {
   scene.grooms[0].hair_mesh.reset();
   EXPECT_THROW(render(scene), Error);
   scene = tuft();
+  scene.grooms[0].lod_lambda = NAN;
+  EXPECT_THROW(render(scene), Error);
+  scene = tuft();
   scene.settings.samples = 3;
   EXPECT_THROW(render(scene), Error);
 }

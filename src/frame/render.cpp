@@ -130,7 +130,7 @@ RenderResult PictureSequence::next(const Camera& camera, const Progress& progres
   const RenderSettings& settings = scene.settings;
   scene.camera = camera;
   Stages stages(progress);
-  stages.note("groom", "points", groom_work(scene));
+  stages.note("groom", draws_hair_meshes(settings) ? "vertices" : "points", groom_work(scene));
   const CameraView view = make_camera_view(camera, settings.width, settings.height);
   const bool beauty = settings.view == View::kBeauty;
   if (beauty && !state_->rig)

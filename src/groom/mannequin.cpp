@@ -74,16 +74,14 @@ bool is_mannequin(const TriangleMesh& mesh) {
 TriangleMesh mannequin_head() { return groom::mannequin().mesh; }
 
 bool grown_on_mannequin(const StrandSet& strands) {
-  constexpr std::size_t kLooks = 512;             // roots looked at, all over the groom
-  constexpr float kSkin = 9e-3f, kEdge = 12e-3f;  // metres: chords of hair meshes, and their quads across the hairline
-  constexpr std::size_t kStray = 20;              // one root of so many may lie elsewhere: corners of fitted hair meshes
+  constexpr std::size_t kLooks = 512;            // roots looked at, all over the groom
+  constexpr float kSkin = 2e-3f, kEdge = 4e-3f;  // metres: chords of the mesh, and its triangles across the hairline
   const std::size_t count = strands.strand_count(), stride = count / kLooks + 1;
-  std::size_t looks = 0, elsewhere = 0;
-  for (std::size_t i = 0; i < count; i += stride, ++looks) {
+  for (std::size_t i = 0; i < count; i += stride) {
     const Vec3 root = strands.points[strands.offsets[i]];
-    elsewhere += !(std::abs(groom::head_distance(root)) < kSkin && groom::hairline_distance(root) > -kEdge);
+    if (!(std::abs(groom::head_distance(root)) < kSkin && groom::hairline_distance(root) > -kEdge)) return false;
   }
-  return count > 0 && elsewhere * kStray <= looks;
+  return count > 0;
 }
 
 }  // namespace pelage

@@ -25,12 +25,7 @@ using testing::HasSubstr;
 HairMesh read_bytes(const std::string& bytes) { return read_hair_mesh(ByteSource("mesh", std::as_bytes(std::span(bytes)))); }
 
 std::string error_of(const std::string& bytes) {
-  try {
-    read_bytes(bytes);
-    return "";
-  } catch (const Error& e) {
-    return e.what();
-  }
+  return kit::error_of([&] { read_bytes(bytes); });
 }
 
 std::string written(const HairMesh& mesh, const std::string& name, const HairMeshPrecision& precision = {}) {

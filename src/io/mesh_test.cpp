@@ -19,12 +19,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 TriangleMesh read_bytes(const std::string& bytes) { return read_mesh(ByteSource("mesh", std::as_bytes(std::span(bytes)))); }
 
 std::string error_of(const std::string& bytes) {
-  try {
-    read_bytes(bytes);
-    return "";
-  } catch (const Error& e) {
-    return e.what();
-  }
+  return kit::error_of([&] { read_bytes(bytes); });
 }
 
 template <class T>

@@ -21,12 +21,7 @@ StrandSet read_bytes(const std::string& bytes, const ImportOptions& options = {}
 }
 
 std::string error_of(const std::string& bytes) {
-  try {
-    read_bytes(bytes);
-    return "";
-  } catch (const Error& e) {
-    return e.what();
-  }
+  return kit::error_of([&] { read_bytes(bytes); });
 }
 
 std::string written(const StrandSet& set, const std::string& format, std::vector<std::string>* lost = nullptr) {

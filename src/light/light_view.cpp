@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/bounds.h"
 #include "core/check.h"
 
 namespace pelage {
@@ -33,14 +34,6 @@ CameraView looking_along(Vec3 eye, Vec3 forward) {
   const Vec3 helper = std::fabs(forward.y) < 0.9f ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
   const Vec3 right = normalize(cross(forward, helper));
   return oriented_view(eye, right, cross(forward, right), forward);
-}
-
-std::array<Vec3, 8> corners(const Bounds& b) {
-  std::array<Vec3, 8> c;
-  for (int i = 0; i < 8; ++i)
-    c[static_cast<std::size_t>(i)] = {i & 1 ? b.upper.x : b.lower.x, i & 2 ? b.upper.y : b.lower.y,
-                                      i & 4 ? b.upper.z : b.lower.z};
-  return c;
 }
 
 /// Sets focal length, centre and size so that the image-plane box [lo, hi] fills the map but for the margin.

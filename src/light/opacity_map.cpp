@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/bounds.h"
 #include "core/check.h"
 #include "core/parallel.h"
 #include "frame/light_lookup.h"
@@ -47,13 +48,6 @@ void for_each_block(const std::vector<Picked>& grooms, const Body& body) {
       }
     });
   }
-}
-
-std::array<Vec3, 8> corners(const Bounds& b) {
-  std::array<Vec3, 8> c;
-  for (std::size_t i = 0; i < 8; ++i)
-    c[i] = {i & 1 ? b.upper.x : b.lower.x, i & 2 ? b.upper.y : b.lower.y, i & 4 ? b.upper.z : b.lower.z};
-  return c;
 }
 
 /// Ends of layers that double in depth; the last is the depth range of the strands.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/bounds.h"
 #include "core/parallel.h"
 #include "frame/camera_view.h"
 #include "groom/hairmesh/prepared.h"
@@ -45,9 +46,7 @@ ScreenBox cage_box(const HairMesh& mesh, const HairMesh::Bundle& bundle, const A
 /// All that its strands can reach.
 ScreenBox strand_box(const Bounds& b, const Affine& to_camera, const CameraView& view) {
   ScreenBox box;
-  for (int i = 0; i < 8; ++i)
-    box.extend(view, transform_point(to_camera, {i & 1 ? b.upper.x : b.lower.x, i & 2 ? b.upper.y : b.lower.y,
-                                                 i & 4 ? b.upper.z : b.lower.z}));
+  for (const Vec3 corner : corners(b)) box.extend(view, transform_point(to_camera, corner));
   return box;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "assemble/strand_block.h"
+#include "core/bounds.h"
 #include "core/check.h"
 #include "core/parallel.h"
 #include "core/shared_progress.h"
@@ -170,10 +171,8 @@ void place_deferred(const Scene& scene, std::span<const DeferredGroom> grooms, c
   float nearest = INFINITY, farthest = 0, left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
   for (const BundleDraw& draw : selection.bundles) {
     const Affine to_camera = compose(view.world_to_camera, scene.grooms[grooms[draw.groom].groom].transform);
-    const Bounds& box = grooms[draw.groom].mesh->boxes[draw.bundle];
-    for (int i = 0; i < 8; ++i) {
-      const Vec3 p = transform_point(
-          to_camera, {i & 1 ? box.upper.x : box.lower.x, i & 2 ? box.upper.y : box.lower.y, i & 4 ? box.upper.z : box.lower.z});
+    for (const Vec3 corner : corners(grooms[draw.groom].mesh->boxes[draw.bundle])) {
+      const Vec3 p = transform_point(to_camera, corner);
       nearest = std::min(nearest, p.z), farthest = std::max(farthest, p.z);
       const bool seen = p.z >= view.near_plane;
       const Vec2 at = seen ? project(view, p) : Vec2();

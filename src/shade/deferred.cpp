@@ -7,8 +7,10 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "frame/camera_view.h"
 #include "frame/fiber.h"
 #include "frame/material_map.h"
+#include "frame/reproject.h"
 #include "groom/hairmesh/prepared.h"
 #include "shade/batch.h"
 #include "shade/evaluate.h"
@@ -99,10 +101,8 @@ Vec3 place_of(const Gather& g, std::uint32_t key_number, PixelKey key) {
   const auto width = static_cast<std::uint32_t>(view.width), samples = static_cast<std::uint32_t>(g.sample_positions.size());
   const std::uint32_t pixel = key_number / samples;
   const Vec2 in_pixel = g.sample_positions[key_number % samples];
-  const float z = g.buffer.range.metres(deferred::depth_level(key));
-  const float scale = (view.perspective ? z : 1.f) / view.focal;
-  return transform_point(view.camera_to_world, {(static_cast<float>(pixel % width) + in_pixel.x - view.center_x) * scale,
-                                                (static_cast<float>(pixel / width) + in_pixel.y - view.center_y) * scale, z});
+  const Vec2 at(static_cast<float>(pixel % width) + in_pixel.x, static_cast<float>(pixel / width) + in_pixel.y);
+  return transform_point(view.camera_to_world, unproject(view, at, g.buffer.range.metres(deferred::depth_level(key))));
 }
 
 void gather_lane(const Gather& g, std::uint32_t number, ShadeBatch& batch, std::size_t i) {
@@ -110,8 +110,7 @@ void gather_lane(const Gather& g, std::uint32_t number, ShadeBatch& batch, std::
   const PixelKey key = g.keys[number];
   const CellFacts& facts = facts_of(g, key);
   const Vec3 position = place_of(g, number, key), tangent = deferred::tangent(key);
-  const Vec3 to_eye = view.perspective ? normalize(transform_point(view.camera_to_world, {0, 0, 0}) - position)
-                                       : normalize(transform_vector(view.camera_to_world, {0, 0, -1}));
+  const Vec3 to_eye = direction_to_eye(view, position);
   const Vec3 absorption = absorption_of(g, key, facts.groom);
   batch.px[i] = position.x, batch.py[i] = position.y, batch.pz[i] = position.z;
   batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;

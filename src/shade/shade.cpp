@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "frame/camera_view.h"
 #include "frame/fiber.h"
 #include "frame/segment_lookup.h"
 #include "shade/batch.h"
@@ -29,11 +30,6 @@ Vec2 screen_place(const Gather& g, std::uint32_t key) {
   const std::uint32_t pixel = key / samples, row = pixel / width;
   const Vec2 in_pixel = g.sample_positions[key % samples];
   return {static_cast<float>(pixel % width) + in_pixel.x, static_cast<float>(row) + in_pixel.y};
-}
-
-Vec3 direction_to_eye(const CameraView& view, Vec3 position) {
-  if (view.perspective) return normalize(transform_point(view.camera_to_world, {0, 0, 0}) - position);
-  return normalize(transform_vector(view.camera_to_world, {0, 0, -1}));
 }
 
 void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, ShadeBatch& batch, std::size_t i,

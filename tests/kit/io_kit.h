@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <pelage/error.h>
 #include <pelage/strand_set.h>
 
 #include <unistd.h>
@@ -37,6 +38,17 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// What read() throws; "" where it does not.
+template <class Read>
+std::string error_of(const Read& read) {
+  try {
+    read();
+    return "";
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
 
 inline std::string slurp(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

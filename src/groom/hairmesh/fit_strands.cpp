@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/shared_progress.h"
+#include "frame/curve_basis.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
@@ -15,16 +16,6 @@ struct Knot {
   float width;
   double s;  // arc length from the root
 };
-
-Vec4 basis_weights(CurveBasis basis, float t) {
-  switch (basis) {
-    case CurveBasis::kCatmullRom: return kernel::curve_catmull_rom_weights(t);
-    case CurveBasis::kBSpline: return kernel::curve_bspline_weights(t);
-    case CurveBasis::kBezier: return kernel::curve_bezier_weights(t);
-    case CurveBasis::kLinear: break;
-  }
-  return kernel::curve_linear_weights(t);
-}
 
 /// The curve of strand `s` by knots on it: a few a span.
 void knots_of(const StrandSet& set, std::size_t s, std::vector<Knot>& knots) {

@@ -28,6 +28,7 @@ const std::vector<std::string>& hair_mesh_style_names() {
 }
 HairMeshStyle hair_mesh_style_from_name(const std::string&) { left_out("hair mesh"); }
 HairMesh make_hair_mesh(const HairMeshSettings&, const Progress&) { left_out("hair mesh"); }
+bool grown_on_mannequin(const HairMesh&) { left_out("hair mesh"); }
 void bake_occlusion(HairMesh&, const Progress&) { left_out("hair mesh"); }
 HairMesh fit_hair_mesh(const StrandSet&, const HairMeshFitSettings&, HairMeshFitReport*, const Progress&) {
   left_out("hair mesh");
