@@ -30,12 +30,15 @@
 namespace pelage::bench {
 namespace {
 
-/// Height of the groom on a screen of 1080 rows.
-struct Distance {
+/// A groom, and its height on a screen of 1080 rows.
+struct Shot {
   const char* name;
+  HairMeshStyle style;
   float pixels;
 };
-constexpr Distance kDistances[] = {{"close", 1000}, {"mid", 350}, {"far", 70}};
+constexpr Shot kShots[] = {{"close", HairMeshStyle::kWavy, 1000},     {"mid", HairMeshStyle::kWavy, 350},
+                           {"far", HairMeshStyle::kWavy, 70},         {"curls.close", HairMeshStyle::kCurls, 1000},
+                           {"curls.mid", HairMeshStyle::kCurls, 350}, {"curls.far", HairMeshStyle::kCurls, 70}};
 
 /// A kind of picture: 1 sample with and without the filter, or sample layers.
 struct Kind {
@@ -46,23 +49,25 @@ struct Kind {
 constexpr Kind kKinds[] = {
     {"center", 1, false}, {"filter", 1, true}, {"msaa2", 2, false}, {"msaa4", 4, false}, {"msaa8", 8, false}};
 
-/// 127k strands of long wavy hair, made once and kept.
-std::shared_ptr<const HairMesh> bench_mesh() {
-  static const auto mesh = std::make_shared<const HairMesh>(make_hair_mesh({.style = HairMeshStyle::kWavy}));
+/// 127k strands, made once and kept.
+std::shared_ptr<const HairMesh> bench_mesh(HairMeshStyle style = HairMeshStyle::kWavy) {
+  static std::map<HairMeshStyle, std::shared_ptr<const HairMesh>> kept;
+  auto& mesh = kept[style];
+  if (!mesh) mesh = std::make_shared<const HairMesh>(make_hair_mesh({.style = style}));
   return mesh;
 }
 
-/// The mesh from the front, so far away that it is `pixels` tall at 1080 rows.
-Scene scene_at(float pixels) {
+/// The mesh from the front, so far away that it is as tall as the shot says.
+Scene scene_of(const Shot& shot) {
   Scene scene;
-  scene.grooms.emplace_back().hair_mesh = bench_mesh();
+  scene.grooms.emplace_back().hair_mesh = bench_mesh(shot.style);
   scene.settings.method = Method::kSwr, scene.settings.samples = 1;
   scene.settings.width = 1920, scene.settings.height = 1080;
   add_default_camera(scene);
   add_default_lights(scene);
-  const Bounds box = bounds(expand(*bench_mesh(), {.points = 17, .share = 0.02f}));
+  const Bounds box = bounds(expand(*bench_mesh(shot.style), {.points = 17, .share = 0.02f}));
   Camera& camera = scene.camera;
-  const float distance = box.extent().y * 1080 / pixels / (2 * std::tan(0.5f * camera.fov_y));
+  const float distance = box.extent().y * 1080 / shot.pixels / (2 * std::tan(0.5f * camera.fov_y));
   const Vec3 back = normalize(camera.eye - camera.target);
   camera.target = box.center(), camera.eye = box.center() + back * (distance + 0.5f * box.extent().z);
   return scene;
@@ -75,9 +80,8 @@ struct Input {
   DeferredGrooms grooms;
   LightRig rig;
 
-  explicit Input(float pixels)
-      : scene(scene_at(pixels)), meshes({}), grooms(prepare_deferred(scene)),
-        rig(prepare_lights(light_stand_in(scene), meshes)) {
+  explicit Input(const Shot& shot)
+      : scene(scene_of(shot)), meshes({}), grooms(prepare_deferred(scene)), rig(prepare_lights(light_stand_in(scene), meshes)) {
     grooms.materials = {scene, grooms.meshes, rig};
   }
 
@@ -92,12 +96,12 @@ struct Input {
   }
 };
 
-/// One input a distance, kept while cases use it.
-std::shared_ptr<const Input> input_at(float pixels) {
-  static std::map<float, std::weak_ptr<const Input>> kept;
-  if (auto known = kept[pixels].lock()) return known;
-  auto made = std::make_shared<const Input>(pixels);
-  kept[pixels] = made;
+/// One input a shot, kept while cases use it.
+std::shared_ptr<const Input> input_of(const Shot& shot) {
+  static std::map<std::string, std::weak_ptr<const Input>> kept;
+  if (auto known = kept[shot.name].lock()) return known;
+  auto made = std::make_shared<const Input>(shot);
+  kept[shot.name] = made;
   return made;
 }
 
@@ -123,8 +127,8 @@ std::string check_frame(const Input& in, RenderSettings settings) {
   return same ? "" : "not the bits of one thread without SIMD";
 }
 
-Workload frame_workload(const Distance& distance, const Kind& kind, bool lod) {
-  auto in = input_at(distance.pixels);
+Workload frame_workload(const Shot& shot, const Kind& kind, bool lod) {
+  auto in = input_of(shot);
   const RenderSettings settings = settings_of(*in, kind, lod);
   return {.check = [in, settings] { return check_frame(*in, settings); }, .run = [in, settings] { in->hair(settings); }};
 }
@@ -137,11 +141,11 @@ Image picture_of(const HairPicture& hair, const RenderSettings& s) {
 }
 
 /// 64 samples a pixel at full detail: frames of one sample each, shaded where it is, without the filter.
-const Picture& reference_at(float pixels) {
-  static std::map<float, Picture> kept;
-  Picture& reference = kept[pixels];
+const Picture& reference_of(const Shot& shot) {
+  static std::map<std::string, Picture> kept;
+  Picture& reference = kept[shot.name];
   if (!reference.image.pixels.empty()) return reference;
-  const auto in = input_at(pixels);
+  const auto in = input_of(shot);
   const RenderSettings s = settings_of(*in, kKinds[0], false);
   FrameMean mean;
   for (const Vec2 position : pixel_sample_positions(64)) mean.add(picture_of(in->hair(s, nullptr, position), s));
@@ -150,13 +154,13 @@ const Picture& reference_at(float pixels) {
 }
 
 /// Error of a picture against that, over its hair, before a gray background.
-Workload quality_workload(const Distance& distance, const Kind& kind, bool lod, const std::string& metric) {
+Workload quality_workload(const Shot& shot, const Kind& kind, bool lod, const std::string& metric) {
   return {.check = [] { return std::string(); },
           .measure =
               [=] {
-                const auto in = input_at(distance.pixels);
+                const auto in = input_of(shot);
                 const RenderSettings s = settings_of(*in, kind, lod);
-                const Picture& reference = reference_at(distance.pixels);
+                const Picture& reference = reference_of(shot);
                 const Picture gray = over_background(reference, s.background);
                 const Comparison c = compare_images(over_background({picture_of(in->hair(s), s)}, s.background), gray,
                                                     {.metrics = {metric}, .mask = hair_mask(reference)});
@@ -187,19 +191,19 @@ std::string check_selection(const Input& in) {
 }
 
 /// Share of the strands that level of detail draws.
-Workload strands_workload(const Distance& distance) {
-  auto in = input_at(distance.pixels);
+Workload strands_workload(const Shot& shot) {
+  auto in = input_of(shot);
   return {.check = [in] { return check_selection(*in); },
           .measure =
               [in] {
                 HairWork work;
                 in->hair(settings_of(*in, kKinds[0], true), &work);
-                return static_cast<double>(work.strands) / static_cast<double>(strand_count(*bench_mesh()));
+                return static_cast<double>(work.strands) / static_cast<double>(strand_count(*in->grooms.meshes[0].mesh->mesh));
               }};
 }
 
-Workload prepass_workload(const Distance& distance) {
-  auto in = input_at(distance.pixels);
+Workload prepass_workload(const Shot& shot) {
+  auto in = input_of(shot);
   return {.check = [in] { return check_selection(*in); },
           .run = [in] { select_lod(in->scene, in->grooms.meshes, make_camera_view(in->scene.camera, 1920, 1080)); }};
 }
@@ -244,19 +248,19 @@ void add_swr_cases(Suite& suite) {
       {"swr.strands.scalar", "points_per_second", "1/s", [] { return strand_workload(make_strands_scalar); }});
   suite.ratios.push_back({"swr.strands.speedup", {"swr.strands.wide"}, {"swr.strands.scalar"}});
   suite.ratios.push_back({"swr.strands.scaling", {"swr.strands.wide", 2}, {"swr.strands.wide", 1}});
-  for (const Distance& distance : kDistances) {
-    const std::string at = std::string("swr.") + distance.name + ".";
+  for (const Shot& shot : kShots) {
+    const std::string at = std::string("swr.") + shot.name + ".";
     for (const Kind& kind : kKinds)
       for (const bool lod : {false, true})
         suite.cases.push_back({at + kind.name + (lod ? ".lod" : ".full"), "seconds_per_frame", "s",
-                               [distance, kind, lod] { return frame_workload(distance, kind, lod); }});
+                               [shot, kind, lod] { return frame_workload(shot, kind, lod); }});
     for (const Kind& kind : kKinds)
       for (const bool lod : {false, true})
         for (const char* metric : {"flip", "mse"})
           suite.cases.push_back({at + "quality." + kind.name + (lod ? ".lod" : ".full"), metric, "1",
-                                 [=] { return quality_workload(distance, kind, lod, metric); }});
-    suite.cases.push_back({at + "prepass", "seconds_per_frame", "s", [distance] { return prepass_workload(distance); }});
-    suite.cases.push_back({at + "strands", "share", "1", [distance] { return strands_workload(distance); }});
+                                 [=] { return quality_workload(shot, kind, lod, metric); }});
+    suite.cases.push_back({at + "prepass", "seconds_per_frame", "s", [shot] { return prepass_workload(shot); }});
+    suite.cases.push_back({at + "strands", "share", "1", [shot] { return strands_workload(shot); }});
     suite.ratios.push_back({at + "lod_gain", {at + "filter.full"}, {at + "filter.lod"}});
     suite.ratios.push_back({at + "filter_over_msaa2", {at + "filter.full"}, {at + "msaa2.full"}});
     suite.ratios.push_back({at + "filter_over_msaa2.lod", {at + "filter.lod"}, {at + "msaa2.lod"}});
