@@ -11,7 +11,10 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bench.h"
 #include "composite/composite.h"
@@ -39,6 +42,9 @@ struct Shot {
 constexpr Shot kShots[] = {{"close", HairMeshStyle::kWavy, 1000},     {"mid", HairMeshStyle::kWavy, 350},
                            {"far", HairMeshStyle::kWavy, 70},         {"curls.close", HairMeshStyle::kCurls, 1000},
                            {"curls.mid", HairMeshStyle::kCurls, 350}, {"curls.far", HairMeshStyle::kCurls, 70}};
+
+/// Heights at which hair with level of detail is compared with all of it.
+constexpr int kLookHeights[] = {2000, 1400, 1000, 700, 500, 350, 200, 140, 100, 70, 50, 35, 20};
 
 /// A kind of picture: 1 sample with and without the filter, or sample layers.
 struct Kind {
@@ -98,10 +104,11 @@ struct Input {
 
 /// One input a shot, kept while cases use it.
 std::shared_ptr<const Input> input_of(const Shot& shot) {
-  static std::map<std::string, std::weak_ptr<const Input>> kept;
-  if (auto known = kept[shot.name].lock()) return known;
+  static std::map<std::pair<HairMeshStyle, float>, std::weak_ptr<const Input>> kept;
+  std::weak_ptr<const Input>& last = kept[{shot.style, shot.pixels}];
+  if (auto known = last.lock()) return known;
   auto made = std::make_shared<const Input>(shot);
-  kept[shot.name] = made;
+  last = made;
   return made;
 }
 
@@ -208,6 +215,74 @@ Workload prepass_workload(const Shot& shot) {
           .run = [in] { select_lod(in->scene, in->grooms.meshes, make_camera_view(in->scene.camera, 1920, 1080)); }};
 }
 
+/// What a frame shows of the hair, in sum over all pixels.
+struct HairSums {
+  double coverage = 0, luminance = 0;
+};
+
+HairSums sums_of(const HairPicture& hair) {
+  HairSums sums;
+  for (const Vec4& c : hair.color) {
+    sums.coverage += static_cast<double>(c.w);
+    sums.luminance += 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) + 0.0722 * static_cast<double>(c.z);
+  }
+  return sums;
+}
+
+/// Σ over / Σ under of pairs of frames, and its standard error as that of a ratio estimator (Cochran 1977, §6.4).
+struct FrameRatio {
+  std::vector<double> over, under;
+  double value() const {
+    return std::accumulate(over.begin(), over.end(), 0.0) / std::accumulate(under.begin(), under.end(), 0.0);
+  }
+  double error() const {
+    const double ratio = value(), n = static_cast<double>(over.size());
+    double squares = 0;
+    for (std::size_t i = 0; i < over.size(); ++i) squares += (over[i] - ratio * under[i]) * (over[i] - ratio * under[i]);
+    return std::sqrt(squares * n / (n - 1)) / std::accumulate(under.begin(), under.end(), 0.0);
+  }
+};
+
+/// Hair with level of detail over hair at full detail.
+struct Look {
+  FrameRatio coverage, luminance;
+};
+
+/// Known to better than kLookError. A bundle's level of detail depends on its share of the screen and not on its pixels, so a frame
+/// with n times the rows and columns shows what n² frames do that are shifted by parts of a pixel.
+constexpr double kLookError = 0.004;
+const Look& look_of(const Shot& shot) {
+  constexpr int kLeastFrames = 4, kMostFrames = 32;
+  static std::map<std::pair<HairMeshStyle, float>, Look> kept;
+  Look& look = kept[{shot.style, shot.pixels}];
+  if (!look.coverage.over.empty()) return look;
+  const auto in = input_of(shot);
+  RenderSettings s[2] = {settings_of(*in, kKinds[0], false), settings_of(*in, kKinds[0], true)};
+  const int finer = std::clamp(static_cast<int>(1000 / shot.pixels), 1, 8);
+  for (RenderSettings& with : s) with.width *= finer, with.height *= finer;
+  const auto noisy = [&] { return std::max(look.coverage.error(), look.luminance.error()) > kLookError; };
+  for (int i = 0; i < kLeastFrames || (i < kMostFrames && noisy()); ++i) {
+    const Vec2 position = jitter_position(static_cast<std::uint32_t>(i));
+    const HairSums full = sums_of(in->hair(s[0], nullptr, position)), lod = sums_of(in->hair(s[1], nullptr, position));
+    look.coverage.under.push_back(full.coverage), look.coverage.over.push_back(lod.coverage);
+    look.luminance.under.push_back(full.luminance), look.luminance.over.push_back(lod.luminance);
+  }
+  return look;
+}
+
+/// Coverage, or the mean radiance of what is covered, over that of full detail.
+Workload look_workload(const Shot& shot, bool radiance) {
+  const auto check = [shot] {
+    const Look& look = look_of(shot);
+    const double error = std::max(look.coverage.error(), look.luminance.error());
+    return error <= kLookError ? std::string() : "the standard error is " + std::to_string(error);
+  };
+  return {.check = check, .measure = [shot, radiance] {
+            const Look& look = look_of(shot);
+            return radiance ? look.luminance.value() / look.coverage.value() : look.coverage.value();
+          }};
+}
+
 using MakeStrands = void (*)(const BundleCage&, std::uint32_t, std::size_t, std::uint32_t, StrandGroup&);
 
 /// All strands of the mesh at full detail, made and forgotten.
@@ -267,6 +342,13 @@ void add_swr_cases(Suite& suite) {
     suite.ratios.push_back({at + "conservative_share", {at + "filter.full"}, {at + "center.full"}});
     suite.ratios.push_back({at + "prepass_share", {at + "prepass"}, {at + "filter.lod"}});
   }
+  for (const std::string& style : hair_mesh_style_names())
+    for (const int pixels : kLookHeights) {
+      const Shot shot{"look", hair_mesh_style_from_name(style), static_cast<float>(pixels)};
+      for (const bool radiance : {false, true})
+        suite.cases.push_back({"swr.look." + style + "." + std::to_string(pixels), radiance ? "radiance" : "coverage", "1",
+                               [shot, radiance] { return look_workload(shot, radiance); }});
+    }
 }
 
 }  // namespace pelage::bench
