@@ -170,6 +170,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
   verb.add_flag("--no-linking", o.no_linking, "link: missed pixels of strands stay empty");
   verb.add_flag("--no-filter", o.no_filter, "link, swr: hair is not smoothed along its strands");
   verb.add_flag("--no-lod", o.no_lod, "swr: all strands and points of hair meshes, however small they are on the screen");
+  verb.add_flag("--no-occlusion", o.no_occlusion, "swr: baked occlusion of hair meshes does not dim the light of the probe");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')
       ->check(CLI::IsMember({"Z", "coverage", "id", "u", "tangent", "albedo", "overdraw", "motion"}));
@@ -192,7 +193,7 @@ bool makes_sequence(const RenderOptions& options) {
 void add_render(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("render", "Render a groom or a scene file");
   auto o = std::make_shared<RenderOptions>();
-  verb->add_option("INPUT", o->input, "Groom file, or scene file (JSON)")->type_name("FILE");
+  verb->add_option("INPUT", o->input, "Groom file, hair mesh, or scene file (JSON)")->type_name("FILE");
   verb->add_option("-o,--output", o->outputs, "Picture to write: .exr, .png or .hdr; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
@@ -213,7 +214,10 @@ void add_render(CLI::App& app) {
       "  pelage render hair.tfx -o reference.exr --method ssaa --spp 64\n"
       "  pelage render hair.tfx -o turn.####.exr --method taa --orbit 0.5 --frames 48 --layers motion\n"
       "  pelage render hair.tfx -o linked.png --method link --alpha coverage\n"
-      "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage");
+      "  pelage render curls.hairmesh -o curls.png --method swr\n"
+      "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage\n"
+      "A scene file may make hair: {\"grooms\": [{\"grow\": {\"style\": \"curly\"}}]}, or, as a hair mesh for --method swr,\n"
+      "{\"grooms\": [{\"grow\": {\"hair_mesh\": \"curls\", \"strands\": 127000, \"seed\": 1}}]}; --schema prints all keys.");
   verb->callback([o] {
     if (o->schema) return fmt::print("{}", io::scene_schema());
     if (o->input.empty()) throw CLI::RequiredError("INPUT");

@@ -27,8 +27,8 @@ struct RenderOptions {
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;
-  bool no_head = false, full_float = false, no_linking = false, no_filter = false, no_lod = false, stats = false, json = false,
-       schema = false;
+  bool no_head = false, full_float = false, no_linking = false, no_filter = false, no_lod = false, no_occlusion = false,
+       stats = false, json = false, schema = false;
 };
 
 /// Adds the options that say what stands in a scene, and from where it is seen.

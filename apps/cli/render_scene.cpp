@@ -15,6 +15,7 @@
 #include "frame/sample_positions.h"
 #include "io/byte_source.h"
 #include "io/file_kind.h"
+#include "io/hair_mesh_formats.h"
 #include "render.h"
 #include "verbs.h"
 
@@ -51,7 +52,9 @@ Vec3 vector(const char* option, const std::string& text) {
 
 Vec3 vector(const std::vector<float>& v) { return {v[0], v[1], v[2]}; }
 
+// Whether it is JSON, but not that of a hair mesh.
 bool is_scene_file(const std::string& path) {
+  if (io::hair_mesh_file(io::ByteSource::open(path)) == io::HairMeshFile::kText) return false;
   std::ifstream file(path, std::ios::binary);
   char c = 0;
   while (file.get(c))
@@ -161,6 +164,7 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.no_linking) s.link.link = false;
   if (o.no_filter) s.link.filter = s.swr.filter = false;
   if (o.no_lod) s.swr.lod = false;
+  if (o.no_occlusion) s.swr.occlusion = false;
   if (o.view)
     s.view = by_name<View>("--view", *o.view,
                            {{"beauty", View::kBeauty},

@@ -90,8 +90,11 @@ struct GroomInstance {
   std::shared_ptr<const Image> color_map;    ///< of a hair mesh: linear RGB over the groom's u (x) and v (y), instead of the
                                              ///< material's color; may be null
   std::shared_ptr<const Image> color_along;  ///< of a hair mesh: the same over w (x), times `color_map` where both are given
-  Affine transform;                          ///< object to world; similarity (rotation, translation, one scale)
-  float width_scale = 1;                     ///< multiplies every width
+  /// Of a hair mesh: what multiplies both roughnesses of the material, and its cuticle_tilt, over u and v, and over w; each in
+  /// the first channel, 0…16; may be null.
+  std::shared_ptr<const Image> roughness_map, roughness_along, tilt_map, tilt_along;
+  Affine transform;       ///< object to world; similarity (rotation, translation, one scale)
+  float width_scale = 1;  ///< multiplies every width
 };
 
 struct MeshInstance {
@@ -194,6 +197,7 @@ struct SwrSettings {
   float connect_depth = 0.05f;    ///< share of the hair's depth from which a strand in front of the pixel's own is another one
   float strip = 0.5f;             ///< w_strip, pixels: half the width of the strip in which hits are counted
   SwrAlpha alpha = SwrAlpha::kRatio;
+  bool occlusion = true;  ///< baked occlusion dims the probe's light; false: strands see the whole sky
 };
 
 struct RenderSettings {
@@ -234,9 +238,7 @@ void expand_hair_meshes(Scene& scene, const Progress& progress = {});
 bool has_unmade_strands(const Scene& scene);
 
 /// How the environment lights the strands of a picture with these settings.
-inline EnvironmentLighting environment_lighting(const RenderSettings& settings) {
-  return settings.environment_lighting.value_or(EnvironmentLighting::kPieces);
-}
+EnvironmentLighting environment_lighting(const RenderSettings& settings);
 
 /// Box of all grooms and meshes in world space.
 Bounds bounds(const Scene& scene);

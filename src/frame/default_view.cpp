@@ -83,6 +83,10 @@ Basis basis_looking_from(Vec3 direction) {
 
 }  // namespace
 
+EnvironmentLighting environment_lighting(const RenderSettings& settings) {
+  return settings.environment_lighting.value_or(EnvironmentLighting::kPieces);
+}
+
 Bounds bounds(const Scene& scene) {
   Bounds box = groom_bounds(scene);
   box.extend(mesh_bounds(scene));

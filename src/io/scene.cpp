@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <pelage/error.h>
 #include <pelage/grow.h>
+#include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
 
 #include <filesystem>
@@ -62,12 +63,13 @@ class Loader {
 
   GroomInstance load_groom(const GroomText& text, std::size_t i, const std::vector<MeshInstance>& meshes) const {
     const std::string place = fmt::format("/grooms/{}", i);
-    require_one(place, "file", !text.file.empty(), "grow", text.grow.has_value());
+    require_one(place, "file", !text.file.empty(), "grow", text.grow || text.hair_mesh);
     GroomInstance groom = text.instance;
     groom.transform = to_affine(text.transform);
     if (text.grow)
       groom.strands =
           std::make_shared<StrandSet>(grow(text.grow->settings, surface(text.grow->surface, place, meshes), progress_));
+    else if (text.hair_mesh) groom.hair_mesh = std::make_shared<HairMesh>(make_hair_mesh(*text.hair_mesh, progress_));
     else if (file_kind(ByteSource::open(file(text.file))).content == FileContent::kHairMesh)
       groom.hair_mesh = std::make_shared<HairMesh>(read_hair_mesh(file(text.file)));
     else groom.strands = std::make_shared<StrandSet>(read_strands(file(text.file), text.import, nullptr, progress_));

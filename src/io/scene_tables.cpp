@@ -143,6 +143,47 @@ const Fields<GrowText>& grow_fields() {
   return table;
 }
 
+const Fields<HairMeshSettings>& hair_mesh_fields() {
+  using H = HairMeshSettings;
+  static const Fields<H> table{
+      Field<H>{"hair_mesh",
+               {{"description", "A head of hair as a hair mesh, on the mannequin"}, {"enum", hair_mesh_style_names()}},
+               [](const JsonValue& v, H& out) {
+                 if (!hair_mesh_style_names().empty()) choice_index(v, hair_mesh_style_names());
+                 out.style = hair_mesh_style_from_name(v.text());  // in a build without them says that there are none
+               }}
+          .required(),
+      integer_field("seed", "Another seed, another head of hair", &H::seed, 0, UINT32_MAX),
+      integer_field("strands", "Number of strands at full detail", &H::strands, 1000, 1000000),
+      number_field("width", "Diameter at the root, meters", &H::width, 0, 0.1),
+      number_field("length_scale", "Length as a share of the style's own", &H::length, 0.5, 1.5),
+      number_field("parting", "Meters left of the middle of the mannequin's head", &H::parting, -0.05, 0.05),
+      boolean_field("occlusion", "Whether ambient occlusion is baked into it", &H::occlusion),
+  };
+  return table;
+}
+
+// Which of the two things that `grow` makes is meant; throws Error where neither or both are.
+bool makes_hair_mesh(const JsonValue& v) {
+  check_is_object(v);
+  const bool strands = v.node().contains("style"), hair_mesh = v.node().contains("hair_mesh");
+  if (strands != hair_mesh) return hair_mesh;
+  std::vector<std::string> known;
+  for (const auto& field : grow_fields()) known.push_back(field.key);
+  for (const auto& field : hair_mesh_fields()) known.push_back(field.key);
+  check_keys(v, known, {});  // a key that is nearly right is worth more than what follows
+  v.fail(strands ? "both `style` and `hair_mesh`" : "neither `style` nor `hair_mesh`", "give exactly one of them");
+}
+
+Field<GroomText> grow_field() {
+  Schema schema{{"description", "Made from a seed instead of a file: strands of a style, or a hair mesh"}};
+  schema["oneOf"] = {object_schema(grow_fields()), object_schema(hair_mesh_fields())};
+  return {"grow", std::move(schema), [](const JsonValue& v, GroomText& out) {
+            if (makes_hair_mesh(v)) read_object(v, hair_mesh_fields(), out.hair_mesh.emplace());
+            else read_object(v, grow_fields(), out.grow.emplace());
+          }};
+}
+
 const Fields<ArtistLobe>& artist_lobe_fields() {
   using L = ArtistLobe;
   static const Fields<L> table{
@@ -216,7 +257,7 @@ const Fields<GroomText>& groom_fields() {
   static const Fields<GroomText> table{
       nested(part, text_field("name", "For people", &G::name)),
       text_field("file", "Groom file, relative to the scene file", &GroomText::file),
-      optional_object_field("grow", "Made from a seed instead of a file", &GroomText::grow, grow_fields()),
+      grow_field(),
       nested(&GroomText::import,
              number_field("scale", "Meters per unit of the file; guessed without it", &ImportOptions::scale, 1e-9, 1e9)),
       nested(&GroomText::import, choice_field("up", "Which axis of the file points up", &ImportOptions::up, kUpAxes)),
@@ -251,6 +292,7 @@ const Fields<SwrSettings>& swr_fields() {
       number_field("connect_depth", "Share of the hair's depth from which a strand is another one", &S::connect_depth, 0, 1),
       number_field("strip", "Pixels, half the width of the strip in which hits are counted", &S::strip, 0, 15),
       choice_field("alpha", "Opacity: share of center hits along the strand, or exact area", &S::alpha, alphas),
+      boolean_field("occlusion", "Whether baked occlusion dims the light of the probe", &S::occlusion),
   };
   return table;
 }

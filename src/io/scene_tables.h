@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pelage/grow.h>
+#include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
 #include <pelage/scene.h>
 
@@ -42,7 +43,8 @@ struct GrowText {
 struct GroomText {
   GroomInstance instance;
   std::string file, color_map, color_along;
-  std::optional<GrowText> grow;  // exactly one of file and grow
+  std::optional<GrowText> grow;               // exactly one of file, grow
+  std::optional<HairMeshSettings> hair_mesh;  // and this, which `grow` may say as well
   ImportOptions import;
   TransformText transform;
 };

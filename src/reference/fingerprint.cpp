@@ -69,8 +69,10 @@ class Fingerprint {
     add_array(s.points), add_array(s.widths), add_array(s.offsets), add_array(s.colors);
   }
   void add_one(const GroomInstance& groom) {
-    const auto& [name, strands, hair_mesh, lod_lambda, material, color_map, color_along, transform, width_scale] = groom;
-    add(material, color_map, color_along, transform, width_scale, strands != nullptr);
+    const auto& [name, strands, hair_mesh, lod_lambda, material, color_map, color_along, roughness_map, roughness_along,
+                 tilt_map, tilt_along, transform, width_scale] = groom;
+    add(material, color_map, color_along, roughness_map, roughness_along, tilt_map, tilt_along, transform, width_scale);
+    add(strands != nullptr);
     if (strands) add(*strands);
   }
   void add_one(const TriangleMesh& m) { add_array(m.positions), add_array(m.normals), add_array(m.uv), add_array(m.triangles); }

@@ -117,7 +117,7 @@ void gather_lane(const Gather& g, std::uint32_t number, ShadeBatch& batch, std::
   batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
   batch.absorb_r[i] = absorption.x, batch.absorb_g[i] = absorption.y, batch.absorb_b[i] = absorption.z;
   batch.depth_shift[i] = facts.depth_shift;
-  batch.occlusion[i] = deferred::occlusion(key);
+  batch.occlusion[i] = g.scene.settings.swr.occlusion ? deferred::occlusion(key) : 1.f;
 }
 
 /// Shades what the keys at `visible` show, at most ShadeBatch::kSize of them, groom by groom.

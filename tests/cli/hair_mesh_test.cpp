@@ -75,6 +75,30 @@ TEST_F(CliHairMesh, IsDrawnAsItsStrands) {
   EXPECT_EQ(run("render scene.json -o scene.png").status, 0);
 }
 
+TEST_F(CliHairMesh, TextIsDrawnLikeBinary) {
+  make_bob();
+  ASSERT_EQ(run("convert bob.hairmesh bob.json").status, 0);
+  for (const char* name : {"bob.hairmesh", "bob.json"}) {
+    const Outcome drawn = run("render " + std::string(name) + " --method swr --size 40x40 -o " + name + ".png");
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+  }
+  EXPECT_TRUE(slurp(in("bob.hairmesh.png")) == slurp(in("bob.json.png")));
+}
+
+// Every method draws what a scene file makes: swr the hair mesh, the others its strands.
+TEST_F(CliHairMesh, ASceneFileMakesItself) {
+  make_bob();
+  const std::string rest = R"(, "camera": {"eye": [0, 0, 1.2], "target": [0, 0, 0]}, "settings": {"width": 40, "height": 40}})";
+  std::ofstream(in("grown.json")) << R"({"grooms": [{"grow": {"hair_mesh": "bob", "strands": 2000, "seed": 3}}])" << rest;
+  for (const char* method : {"swr", "msaa"}) {
+    const std::string options = " --method " + std::string(method) + " --spp 1 --no-shadows -o ";
+    const Outcome grown = run("render grown.json" + options + "grown.exr");
+    ASSERT_EQ(grown.status, 0) << grown.err;
+    const Image picture = read_image(in("grown.exr").string());
+    EXPECT_GT(*std::max_element(picture.pixels.begin(), picture.pixels.end()), *picture.at(0, 0) + 0.05f) << method;
+  }
+}
+
 TEST_F(CliHairMesh, MistakesAreNamed) {
   Outcome outcome = run("grow --hair-mesh bop -o a.hairmesh");
   EXPECT_EQ(outcome.status, 1);
