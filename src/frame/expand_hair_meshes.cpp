@@ -14,7 +14,7 @@ void color_points(const GroomInstance& groom, StrandSet& set) {
   for (std::size_t s = 0; s < set.strand_count(); ++s)
     for (std::uint32_t i = set.offsets[s]; i < set.offsets[s + 1]; ++i) {
       const float w = static_cast<float>(i - set.offsets[s]) / static_cast<float>(set.offsets[s + 1] - set.offsets[s] - 1);
-      set.colors[i] = mapped_color(groom, set.root_uv[s].x, set.root_uv[s].y, w);
+      set.colors[i] = mapped_color(groom, {set.root_uv[s].x, set.root_uv[s].y, w});
     }
 }
 

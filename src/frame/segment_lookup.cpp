@@ -107,6 +107,11 @@ float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, c
   return std::clamp(da / (da - db), 0.f, 1.f);
 }
 
+Finish strand_finish(const GroomInstance& groom, std::uint32_t strand, float u) {
+  const Vec2 uv = groom.strands->root_uv.empty() ? Vec2() : groom.strands->root_uv[strand];
+  return mapped_finish(groom, {uv.x, uv.y, u});
+}
+
 Vec3 strand_color(const GroomInstance& groom, std::uint32_t strand, std::uint32_t span) {
   const StrandSet& set = *groom.strands;
   if (set.colors.empty()) return groom.material.color;

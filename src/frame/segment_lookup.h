@@ -7,6 +7,7 @@
 
 #include "frame/curve_basis.h"
 #include "frame/frame.h"
+#include "frame/material_map.h"
 
 namespace pelage {
 
@@ -38,6 +39,9 @@ StrandSurface surface_at(const Scene& scene, const SegmentNumbering& numbering, 
 /// (x, y), pixels; perspective-correct.
 float locate_on_segment(const Scene& scene, const SegmentNumbering& numbering, const CameraView& view, const SegmentRef& s,
                         float x, float y);
+
+/// Roughness and tilt of a strand at u, 0 at the root … 1 at the tip, as factors of the material's; of grooms with maps of them.
+Finish strand_finish(const GroomInstance& groom, std::uint32_t strand, float u);
 
 /// Color of a strand where a span starts: its own where it has one, else the material's.
 Vec3 strand_color(const GroomInstance& groom, std::uint32_t strand, std::uint32_t span);

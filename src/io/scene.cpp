@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/nearest.h"
+#include "frame/material_map.h"
 #include "io/byte_source.h"
 #include "io/file_kind.h"
 #include "io/scene_tables.h"
@@ -75,6 +76,10 @@ class Loader {
     else groom.strands = std::make_shared<StrandSet>(read_strands(file(text.file), text.import, nullptr, progress_));
     groom.color_map = load_map(text.color_map, place + "/color_map");
     groom.color_along = load_map(text.color_along, place + "/color_along");
+    groom.roughness_map = load_factors(text.roughness_map, place + "/roughness_map");
+    groom.roughness_along = load_factors(text.roughness_along, place + "/roughness_along");
+    groom.tilt_map = load_factors(text.tilt_map, place + "/tilt_map");
+    groom.tilt_along = load_factors(text.tilt_along, place + "/tilt_along");
     return groom;
   }
 
@@ -83,6 +88,19 @@ class Loader {
     if (name.empty()) return nullptr;
     auto map = std::make_shared<Image>(read_image(file(name)));
     if (map->channel_count() < 3) fail(place, "the image has no red, green and blue", "");
+    return map;
+  }
+
+  /// An image with numbers in its first channel, 0…kMostFinish; null for no name.
+  std::shared_ptr<const Image> load_factors(const std::string& name, const std::string& place) const {
+    if (name.empty()) return nullptr;
+    auto map = std::make_shared<Image>(read_image(file(name), false));
+    for (std::size_t i = 0; i < map->pixels.size(); i += map->channel_count()) {
+      const float value = map->pixels[i];
+      if (value >= 0 && value <= kMostFinish) continue;
+      const std::size_t p = i / map->channel_count(), width = static_cast<std::size_t>(map->width);
+      fail(place, fmt::format("pixel ({}, {}) is {}", p % width, p / width, value), fmt::format("from 0 to {}", kMostFinish));
+    }
     return map;
   }
 

@@ -271,6 +271,14 @@ const Fields<GroomText>& groom_fields() {
                  &GroomText::color_map),
       text_field("color_along", "Of a hair mesh: image of its color from root to tip, in its first row",
                  &GroomText::color_along),
+      text_field("roughness_map",
+                 "Of a hair mesh: image whose first channel, as it stands in the file, multiplies the material's "
+                 "roughness over u and v",
+                 &GroomText::roughness_map),
+      text_field("roughness_along", "Of a hair mesh: the same from root to tip, in its first row", &GroomText::roughness_along),
+      text_field("tilt_map", "Of a hair mesh: image whose first channel multiplies the cuticle tilt over u and v",
+                 &GroomText::tilt_map),
+      text_field("tilt_along", "Of a hair mesh: the same from root to tip, in its first row", &GroomText::tilt_along),
   };
   return table;
 }

@@ -42,7 +42,7 @@ struct GrowText {
 
 struct GroomText {
   GroomInstance instance;
-  std::string file, color_map, color_along;
+  std::string file, color_map, color_along, roughness_map, roughness_along, tilt_map, tilt_along;
   std::optional<GrowText> grow;               // exactly one of file, grow
   std::optional<HairMeshSettings> hair_mesh;  // and this, which `grow` may say as well
   ImportOptions import;

@@ -94,6 +94,28 @@ TEST_F(SceneFile, MakesAHairMesh) {
   for (const auto& [json, expected_error] : mistakes) EXPECT_EQ(error(json), expected_error) << json;
 }
 
+TEST_F(SceneFile, MapsAreColorsOrNumbers) {
+  Image gray(2, 1, {"Y"}), wild(2, 1, {"Y"});
+  gray.pixels = {0.5f, 1}, wild.pixels = {1, -3};
+  write_image((folder_ / "gray.png").string(), gray);
+  write_image((folder_ / "wild.exr").string(), wild);
+  const auto with = [](const std::string& keys) {
+    return R"({"grooms": [{"grow": {"style": "curly", "strands": 2}, )" + keys + "}]}";
+  };
+  const GroomInstance groom =
+      read(
+          with(
+              R"("roughness_map": "gray.png", "roughness_along": "gray.png", "tilt_map": "gray.png", "tilt_along": "gray.png")"))
+          .grooms.at(0);
+  for (const auto& map : {groom.roughness_map, groom.roughness_along, groom.tilt_map, groom.tilt_along}) {
+    ASSERT_TRUE(map);
+    EXPECT_EQ(map->pixels, (std::vector<float>{128 / 255.f, 1})) << "as they stand in the file";
+  }
+  EXPECT_EQ(groom.color_map, nullptr);
+  EXPECT_EQ(error(with(R"("tilt_along": "wild.exr")")), "/grooms/0/tilt_along: pixel (1, 0) is -3 (from 0 to 16)");
+  EXPECT_EQ(error(with(R"("color_map": "gray.png")")), "/grooms/0/color_map: the image has no red, green and blue");
+}
+
 TEST_F(SceneFile, MaterialsOfChiangAndSadeghi) {
   const Scene scene = read(R"({"grooms": [
     {"grow": {"style": "straight", "strands": 2}, "material": {"model": "chiang", "beta_m": 0.3, "beta_n": 0.4}},

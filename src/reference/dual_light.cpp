@@ -56,13 +56,17 @@ Vec3 artist_attenuation(const HairMaterial& material, Vec3 sigma_a) {
 DualLight::DualLight(const std::vector<GroomInstance>& grooms) {
   for (const GroomInstance& groom : grooms) {
     const Model model = groom.material.model;
-    const bool tabulated = model != Model::kKajiyaKay && model != Model::kSadeghi;
-    grooms_.push_back({groom.material, tabulated ? make_forward_attenuation_table(groom.material) : ForwardAttenuationTable{}});
+    Entry entry{groom.material, has_finish_maps(groom), {}, {}};
+    if (entry.mapped) entry.levels = RoughnessLevels(groom);
+    if (model != Model::kKajiyaKay && model != Model::kSadeghi)
+      for (const float roughness : entry.levels.values())
+        entry.attenuation.push_back(make_forward_attenuation_table(entry.at({roughness, 1})));
+    grooms_.push_back(std::move(entry));
   }
 }
 
-DualPlace DualLight::place(std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_eye) const {
-  const HairMaterial& material = grooms_[groom].material;
+DualPlace DualLight::place(std::size_t groom, Vec3 color, Finish finish, Vec3 tangent, Vec3 to_eye) const {
+  const HairMaterial material = grooms_[groom].at(finish);
   const ScatterFiber fiber = make_fiber(material, color);
   const float sin_o = v_clamp(dot(to_eye, tangent), -1, 1), cos_o = std::sqrt(1 - sin_o * sin_o);
   DualPlace s;
@@ -84,20 +88,22 @@ DualPlace DualLight::place(std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_
   return s;
 }
 
-void DualLight::cross(CrossedStrands& crossed, std::size_t groom, Vec3 color, Vec3 tangent, Vec3 to_light) const {
+void DualLight::cross(CrossedStrands& crossed, std::size_t groom, Vec3 color, Finish finish, Vec3 tangent,
+                      Vec3 to_light) const {
   const Entry& entry = grooms_[groom];
-  const Vec3 sigma_a = fiber_absorption(entry.material, color);
+  const HairMaterial material = entry.at(finish);
+  const Vec3 sigma_a = fiber_absorption(material, color);
   ++crossed.count;
-  if (entry.material.model == Model::kKajiyaKay) {  // half of what its diffuse lobe scatters goes on
-    crossed.attenuation = crossed.attenuation * scatter_tuft_color(sigma_a, entry.material.beta_azimuthal) * 0.5f;
+  if (material.model == Model::kKajiyaKay) {  // half of what its diffuse lobe scatters goes on
+    crossed.attenuation = crossed.attenuation * scatter_tuft_color(sigma_a, material.beta_azimuthal) * 0.5f;
     return;
   }
-  if (entry.material.model == Model::kSadeghi) {
-    crossed.attenuation = crossed.attenuation * artist_attenuation(entry.material, sigma_a);
+  if (material.model == Model::kSadeghi) {
+    crossed.attenuation = crossed.attenuation * artist_attenuation(material, sigma_a);
     return;
   }
   const float sin_i = v_clamp(dot(to_light, tangent), -1, 1), cos_i = std::sqrt(1 - sin_i * sin_i);
-  const ForwardAttenuationTable& table = entry.attenuation;
+  const ForwardAttenuationTable& table = entry.attenuation[entry.levels.nearest(finish.roughness)];
   crossed.attenuation = crossed.attenuation *
                         Vec3(table.lookup(cos_i, sigma_a.x), table.lookup(cos_i, sigma_a.y), table.lookup(cos_i, sigma_a.z));
 }

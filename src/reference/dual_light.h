@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frame/dual_scattering_tables.h"
+#include "frame/material_map.h"
 #include "kernel/scalar.h"
 #include "reference/light_sampler.h"
 #include "reference/ray_scene.h"
@@ -37,16 +38,21 @@ class DualLight {
  public:
   explicit DualLight(const std::vector<GroomInstance>& grooms);
 
-  DualPlace place(std::size_t groom, Vec3 strand_color, Vec3 tangent, Vec3 to_eye) const;
+  /// finish: by the maps of the groom; (1, 1) without.
+  DualPlace place(std::size_t groom, Vec3 strand_color, Finish finish, Vec3 tangent, Vec3 to_eye) const;
   /// One more strand of groom `groom` on the way of light toward `to_light`.
-  void cross(CrossedStrands& crossed, std::size_t groom, Vec3 strand_color, Vec3 tangent, Vec3 to_light) const;
+  void cross(CrossedStrands& crossed, std::size_t groom, Vec3 strand_color, Finish finish, Vec3 tangent, Vec3 to_light) const;
   /// f·cos θ_i of the strand and of the hair around it.
   static Vec3 evaluate(const DualPlace& place, Vec3 to_light, const CrossedStrands& crossed);
 
  private:
   struct Entry {
     HairMaterial material;
-    ForwardAttenuationTable attenuation;  ///< empty for Kajiya-Kay
+    bool mapped;
+    RoughnessLevels levels;
+    std::vector<ForwardAttenuationTable> attenuation;  ///< of each level; none for Kajiya-Kay
+
+    HairMaterial at(Finish finish) const { return mapped ? finished(material, finish) : material; }
   };
   std::vector<Entry> grooms_;
 };

@@ -112,6 +112,7 @@ struct PathTracer::State {
   void transport(const Vertex& first, int max_bounces, Sequence& random, Tally& tally) const;
   void gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random, Tally& tally) const;
   Vec3 color_of(const SceneHit& hit) const;
+  Finish finish_of(const SceneHit& hit) const;
   void see_environment(Vec3 direction, PathSample& result) const;
   PathSample sample(int x, int y, std::uint32_t index) const;
 };
@@ -140,6 +141,14 @@ Vec3 PathTracer::State::color_of(const SceneHit& hit) const {
   return strand_color(g, label.strand, label.span);
 }
 
+/// Of a strand where it was met, by the maps of its groom.
+Finish PathTracer::State::finish_of(const SceneHit& hit) const {
+  const GroomInstance& g = grooms[hit.object];
+  if (!has_finish_maps(g)) return {};
+  const StrandLabel label = rays.strand_label(hit);
+  return strand_finish(g, label.strand, label.u);
+}
+
 /// What the ray met, ready to scatter toward the ray's origin.
 Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
   const Vec3 to_eye = normalize(-ray.direction);
@@ -148,8 +157,14 @@ Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
     const Vec3 off_axis = ray.origin + ray.direction * hit.distance - place.axis,
                side = normalize(cross(to_eye, place.tangent));
     const float h = place.radius > 0 ? std::clamp(dot(off_axis, side) / place.radius, -1.f, 1.f) : 0.f;
+    const GroomInstance& g = grooms[hit.object];
+    const auto scattering = [&](const FiberMaterial& m) { return FiberBsdf(m, color_of(hit), place.tangent, to_eye, h); };
     return {
-        place.axis, place.tangent, {}, place.radius, FiberBsdf(fibers[hit.object], color_of(hit), place.tangent, to_eye, h)};
+        place.axis,
+        place.tangent,
+        {},
+        place.radius,
+        has_finish_maps(g) ? scattering(FiberMaterial(finished(g.material, finish_of(hit)))) : scattering(fibers[hit.object])};
   }
   Surface s = rays.surface(hit);
   if (dot(s.geometric_normal, to_eye) < 0)
@@ -275,14 +290,15 @@ void PathTracer::State::transport(const Vertex& first, int max_bounces, Sequence
 /// Light that leaves a strand toward the eye by dual scattering: one ray to every light counts the strands on its way.
 void PathTracer::State::gather_dual(const Vertex& vertex, const SceneHit& hit, const Ray& ray, Sequence& random,
                                     Tally& tally) const {
-  const DualPlace place = dual->place(hit.object, color_of(hit), vertex.tangent, normalize(-ray.direction));
+  const DualPlace place = dual->place(hit.object, color_of(hit), finish_of(hit), vertex.tangent, normalize(-ray.direction));
   const auto gather_one = [&](const LightRay& light) {
     if (!(largest(light.arriving) > 0)) return;
     CrossedStrands crossed;
     const Ray way = vertex.ray(light.to_light, light.distance);
     if (settings.shadows && light.casts_shadow && way.near < way.far) {
       const auto cross = [&](const SceneHit& on_way) {
-        dual->cross(crossed, on_way.object, color_of(on_way), rays.strand_place(on_way).tangent, light.to_light);
+        dual->cross(crossed, on_way.object, color_of(on_way), finish_of(on_way), rays.strand_place(on_way).tangent,
+                    light.to_light);
       };
       if (!rays.cross_strands(way, cross)) return;
     }

@@ -40,7 +40,8 @@ MapConstants shadow_constants(const ShadowMap& map) {
 void pad(ShadeBatch& batch) {
   for (ShadeBatch::Lanes* lanes :
        {&batch.px, &batch.py, &batch.pz, &batch.tx, &batch.ty, &batch.tz, &batch.ex, &batch.ey, &batch.ez, &batch.absorb_r,
-        &batch.absorb_g, &batch.absorb_b, &batch.depth_shift, &batch.occlusion})
+        &batch.absorb_g, &batch.absorb_b, &batch.depth_shift, &batch.beta_longitudinal, &batch.beta_azimuthal, &batch.tilt,
+        &batch.table, &batch.occlusion})
     std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
 }
 
@@ -66,15 +67,37 @@ ProbeConstants probe_constants(const LightRig& rig) {
 }
 
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig) {
+  GroomInstance groom;
+  groom.material = material;
+  return shade_constants(groom, dual_scattering, rig);
+}
+
+ShadeConstants shade_constants(const GroomInstance& groom, bool dual_scattering, const LightRig& rig) {
   using Model = HairMaterial::Model;
+  const HairMaterial& material = groom.material;
   const bool dual = dual_scattering && material.model != Model::kKajiyaKay;
   const bool tabulated = dual && material.model != Model::kSadeghi;
-  return {material,
-          make_artist_fiber(material),
-          dual,
-          light_constants(rig),
-          probe_constants(rig),
-          tabulated ? make_forward_attenuation_table(material) : ForwardAttenuationTable{}};
+  ShadeConstants k;
+  k.material = material, k.artist = make_artist_fiber(material), k.dual_scattering = dual;
+  k.lights = light_constants(rig), k.probe = probe_constants(rig);
+  k.mapped = has_finish_maps(groom);
+  if (k.mapped) k.levels = RoughnessLevels(groom);
+  if (!tabulated) return k;
+  for (const float roughness : k.levels.values()) {
+    const HairMaterial level = k.mapped ? finished(material, {roughness, 1}) : material;
+    const std::vector<float> table = make_forward_attenuation_table(level).a_f;
+    k.attenuation.insert(k.attenuation.end(), table.begin(), table.end());
+  }
+  return k;
+}
+
+HairMaterial set_finish(const ShadeConstants& k, Finish finish, ShadeBatch& batch, std::size_t i) {
+  const HairMaterial material = finished(k.material, finish);
+  batch.beta_longitudinal[i] = material.beta_longitudinal, batch.beta_azimuthal[i] = material.beta_azimuthal;
+  batch.tilt[i] = material.cuticle_tilt;
+  batch.table[i] =
+      static_cast<float>(k.levels.nearest(finish.roughness)) * (kernel::kScatterTableRows * kernel::kScatterTableColumns);
+  return material;
 }
 
 }  // namespace pelage

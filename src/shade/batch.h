@@ -10,6 +10,7 @@
 
 #include "frame/frame.h"
 #include "frame/dual_scattering_tables.h"
+#include "frame/material_map.h"
 
 namespace pelage {
 
@@ -25,6 +26,8 @@ struct ShadeBatch {
   alignas(64) Lanes ex, ey, ez;                    ///< direction to the eye, unit length
   alignas(64) Lanes absorb_r, absorb_g, absorb_b;  ///< per fiber radius
   alignas(64) Lanes depth_shift{};                 ///< strands between it and every light that are not there after all
+  alignas(64) Lanes beta_longitudinal{}, beta_azimuthal{}, tilt{};  ///< of grooms with maps of them; see HairMaterial
+  alignas(64) Lanes table{};  ///< of those: where their ForwardAttenuationTable begins, a whole number
   /// share of the probe's light that arrives, 0…1; 1 where none is baked
   alignas(64) Lanes occlusion = ones();
   alignas(64) Lanes r, g, b;  ///< result: radiance, W/(m²·sr)
@@ -76,7 +79,9 @@ struct ShadeConstants {
   bool dual_scattering = true;
   std::vector<LightConstants> lights;
   ProbeConstants probe;
-  ForwardAttenuationTable attenuation;  ///< of the material; empty without dual scattering, and of kSadeghi
+  bool mapped = false;             ///< roughness and tilt are those of the lanes
+  RoughnessLevels levels;          ///< of the groom's maps
+  std::vector<float> attenuation;  ///< a ForwardAttenuationTable of each level; empty without dual scattering, and of kSadeghi
 };
 
 /// Radians: a light of more spread than this counts as coming from a half circle of azimuths.
@@ -87,5 +92,9 @@ ProbeConstants probe_constants(const LightRig& rig);
 /// Makes the material's table where dual scattering is on and the model needs one: Kajiya-Kay does not know it, Sadeghi's
 /// lobes do not depend on the inclination.
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig);
+/// The same with the tables that the groom's maps of roughness need.
+ShadeConstants shade_constants(const GroomInstance& groom, bool dual_scattering, const LightRig& rig);
+/// Tells lane `i`, of a groom with maps of roughness or tilt, its own; returns the material there.
+HairMaterial set_finish(const ShadeConstants& constants, Finish finish, ShadeBatch& batch, std::size_t i);
 
 }  // namespace pelage

@@ -82,17 +82,27 @@ const CellFacts& facts_of(const Gather& g, PixelKey key) {
   return g.facts[std::size_t{deferred::v_cell(key)} * kUvCells + deferred::u_cell(key)];
 }
 
-Vec3 absorption_of(const Gather& g, PixelKey key, std::uint32_t groom) {
-  const GroomInstance& instance = g.scene.grooms[g.grooms[groom].groom];
-  if (!has_color_maps(instance)) return g.absorption[groom];
+/// The middle of the cells of uvw.
+GroomPlace groom_place(const Gather& g, PixelKey key, std::uint32_t groom) {
   const UvCells cells = uv_cells(groom, g.grooms.size());
   const auto middle = [](std::uint32_t cell, std::uint32_t count) {
     return (static_cast<float>(cell) + 0.5f) / static_cast<float>(count);
   };
-  const Vec3 color =
-      mapped_color(instance, middle(deferred::u_cell(key) - cells.first_u, cells.count),
-                   middle(deferred::v_cell(key) - cells.first_v, cells.count), middle(deferred::w_cell(key), 64));
-  return kernel::scatter_absorption(color, instance.material.beta_azimuthal);
+  return {middle(deferred::u_cell(key) - cells.first_u, cells.count),
+          middle(deferred::v_cell(key) - cells.first_v, cells.count), middle(deferred::w_cell(key), 64)};
+}
+
+/// Absorption of what the key shows; tells lane `i` its roughness and tilt where maps have them.
+Vec3 set_material(const Gather& g, PixelKey key, std::uint32_t groom, const ShadeConstants& constants, ShadeBatch& batch,
+                  std::size_t i) {
+  const GroomInstance& instance = g.scene.grooms[g.grooms[groom].groom];
+  const bool colored = has_color_maps(instance);
+  if (!colored && !constants.mapped) return g.absorption[groom];
+  const GroomPlace place = groom_place(g, key, groom);
+  const HairMaterial material =
+      constants.mapped ? set_finish(constants, mapped_finish(instance, place), batch, i) : instance.material;
+  return colored ? kernel::scatter_absorption(mapped_color(instance, place), material.beta_azimuthal)
+                 : fiber_absorption(material, material.color);
 }
 
 /// World-space place of a sample, from its depth.
@@ -105,13 +115,13 @@ Vec3 place_of(const Gather& g, std::uint32_t key_number, PixelKey key) {
   return transform_point(view.camera_to_world, unproject(view, at, g.buffer.range.metres(deferred::depth_level(key))));
 }
 
-void gather_lane(const Gather& g, std::uint32_t number, ShadeBatch& batch, std::size_t i) {
+void gather_lane(const Gather& g, std::uint32_t number, const ShadeConstants& constants, ShadeBatch& batch, std::size_t i) {
   const CameraView& view = g.buffer.view;
   const PixelKey key = g.keys[number];
   const CellFacts& facts = facts_of(g, key);
   const Vec3 position = place_of(g, number, key), tangent = deferred::tangent(key);
   const Vec3 to_eye = direction_to_eye(view, position);
-  const Vec3 absorption = absorption_of(g, key, facts.groom);
+  const Vec3 absorption = set_material(g, key, facts.groom, constants, batch, i);
   batch.px[i] = position.x, batch.py[i] = position.y, batch.pz[i] = position.z;
   batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
   batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
@@ -128,7 +138,7 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
     batch.count = 0;
     for (std::uint32_t i = 0; i < visible.size(); ++i) {
       if (facts_of(g, g.keys[visible[i]]).groom != groom) continue;
-      gather_lane(g, visible[i], batch, batch.count);
+      gather_lane(g, visible[i], constants[groom], batch, batch.count);
       taken[batch.count++] = i;
     }
     if (batch.count == 0) continue;
@@ -143,7 +153,7 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
 DeferredMaterials::DeferredMaterials(const Scene& scene, std::span<const DeferredGroom> grooms, const LightRig& rig) {
   std::vector<ShadeConstants> constants;
   for (const DeferredGroom& groom : grooms)
-    constants.push_back(shade_constants(scene.grooms[groom.groom].material, scene.settings.dual_scattering, rig));
+    constants.push_back(shade_constants(scene.grooms[groom.groom], scene.settings.dual_scattering, rig));
   constants_ = std::make_shared<const std::vector<ShadeConstants>>(std::move(constants));
 }
 

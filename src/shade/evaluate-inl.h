@@ -109,6 +109,7 @@ struct ShadePlace {
   ScatterBack back;          //
   Vec3 tuft_color;           // of what has a diffuse lobe
   Float depth_shift;         // crossings
+  Float table;               // where its table of forward attenuation begins
 };
 
 // Lobes of the models that have Marschner's kinds. Chiang's model is near-field: its mean over the fiber is shaded with.
@@ -140,13 +141,18 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   const Vec3 absorption = vec(batch.absorb_r, batch.absorb_g, batch.absorb_b);
   const Float sin_o = v_clamp(dot(to_eye, s.tangent), Float(-1.0f), Float(1.0f));
   s.across_o = v_normalize(to_eye - s.tangent * sin_o);
-  s.fiber = scatter_fiber(Float(material.eta), Float(material.beta_longitudinal), Float(material.beta_azimuthal),
-                          Float(material.cuticle_tilt), Float(material.specular_gain), absorption);
+  const auto own = [&](const ShadeBatch::Lanes& lanes, float shared) {
+    return k.mapped ? load(lanes.data() + i) : Float(shared);
+  };
+  const Float beta_azimuthal = own(batch.beta_azimuthal, material.beta_azimuthal);
+  s.fiber = scatter_fiber(Float(material.eta), own(batch.beta_longitudinal, material.beta_longitudinal), beta_azimuthal,
+                          own(batch.tilt, material.cuticle_tilt), Float(material.specular_gain), absorption);
+  s.table = own(batch.table, 0);
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
   s.depth_shift = load(batch.depth_shift.data() + i);
   const bool probe = k.probe.texels != nullptr;
   const bool diffuse = material.model == HairMaterial::Model::kKajiyaKay || material.model == HairMaterial::Model::kPelekis;
-  if (probe || (diffuse && !k.dual_scattering)) s.tuft_color = scatter_tuft_color(absorption, Float(material.beta_azimuthal));
+  if (probe || (diffuse && !k.dual_scattering)) s.tuft_color = scatter_tuft_color(absorption, beta_azimuthal);
   if (probe || material.model == HairMaterial::Model::kPelekis) s.pelekis = scatter_prepare_pelekis(s.fiber, sin_o, cos_o);
   if (material.model == HairMaterial::Model::kSadeghi) {
     s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), scatter_crossing_color(absorption), sin_o, cos_o);
@@ -225,11 +231,11 @@ PELAGE_LANES_FN Vec3 shade_forwarded(HairMaterial::Model model, const ShadePlace
 
 // Mean forward attenuation of the fibers that a light passes on its way here: they lie like this one, so light meets them
 // at its own inclination, not at the eye's.
-PELAGE_LANES_FN Vec3 shade_forward_attenuation(const ForwardAttenuationTable& table, const ShadePlace& s, Float cos_i) {
+PELAGE_LANES_FN Vec3 shade_forward_attenuation(const std::vector<float>& tables, const ShadePlace& s, Float cos_i) {
   const auto channel = [&](Float sigma_a) {
     const ScatterTableCell c = scatter_table_cell(cos_i, sigma_a);
-    const float* v = table.a_f.data();
-    const Int corner = to_int(c.index);
+    const float* v = tables.data();
+    const Int corner = to_int(c.index + s.table);
     const auto next_row = static_cast<std::size_t>(kScatterTableColumns);
     return scatter_table_mix(c, gather(v, corner), gather(v + 1, corner), gather(v + next_row, corner),
                              gather(v + next_row + 1, corner));

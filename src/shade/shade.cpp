@@ -32,14 +32,16 @@ Vec2 screen_place(const Gather& g, std::uint32_t key) {
   return {static_cast<float>(pixel % width) + in_pixel.x, static_cast<float>(row) + in_pixel.y};
 }
 
-void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, ShadeBatch& batch, std::size_t i,
-                 StrandSample* visibility) {
+void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, const ShadeConstants& constants,
+                 ShadeBatch& batch, std::size_t i, StrandSample* visibility) {
   const GroomInstance& groom = g.scene.grooms[segment.groom];
   const Vec2 at = screen_place(g, key);
   const float t = locate_on_segment(g.scene, g.numbering, g.view, segment, at.x, at.y);
   const StrandSurface s = surface_at(g.scene, g.numbering, segment, t);
   const Vec3 to_eye = direction_to_eye(g.view, s.position);
-  const Vec3 absorption = fiber_absorption(groom.material, strand_color(groom, segment.strand, segment.span));
+  const HairMaterial material =
+      constants.mapped ? set_finish(constants, strand_finish(groom, segment.strand, s.u), batch, i) : groom.material;
+  const Vec3 absorption = fiber_absorption(material, strand_color(groom, segment.strand, segment.span));
   batch.px[i] = s.position.x, batch.py[i] = s.position.y, batch.pz[i] = s.position.z;
   batch.tx[i] = s.tangent.x, batch.ty[i] = s.tangent.y, batch.tz[i] = s.tangent.z;
   batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
@@ -67,7 +69,7 @@ void shade_block(const Gather& g, const std::vector<ShadeConstants>& constants, 
         left[left_count++] = i;
         continue;
       }
-      gather_lane(g, visible[i], segments[i], batch, batch.count, visibility ? visibility + i : nullptr);
+      gather_lane(g, visible[i], segments[i], constants[groom], batch, batch.count, visibility ? visibility + i : nullptr);
       taken[batch.count++] = i;
     }
     pad(batch);
@@ -101,7 +103,7 @@ Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& v
   const Gather gather{scene, view, numbering, sample_positions, keys, packer ? &*packer : nullptr};
   std::vector<ShadeConstants> constants;
   for (const GroomInstance& groom : scene.grooms)
-    constants.push_back(shade_constants(groom.material, scene.settings.dual_scattering, rig));
+    constants.push_back(shade_constants(groom, scene.settings.dual_scattering, rig));
   parallel_for(list.first.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
     ShadeBatch batch;
     shade_block(gather, constants, {list.first.data() + begin, end - begin}, evaluator, batch, radiance.color.data() + begin,
