@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,14 +92,32 @@ struct Input {
     grooms.materials = {scene, grooms.meshes, rig};
   }
 
-  /// position: of the one sample of each pixel.
-  HairPicture hair(const RenderSettings& settings, HairWork* work = nullptr, Vec2 position = {0.5f, 0.5f}) const {
+  /// position: of the one sample of each pixel; view: instead of that of the scene's camera.
+  HairPicture hair(const RenderSettings& settings, HairWork* work = nullptr, Vec2 position = {0.5f, 0.5f},
+                   const CameraView* view = nullptr) const {
     Scene with = scene;
     with.settings = settings;
-    Stages stages({});
-    FrameInputs inputs{with, meshes, rig, make_camera_view(scene.camera, settings.width, settings.height), {}};
+    FrameInputs inputs{with, meshes, rig, view ? *view : make_camera_view(scene.camera, settings.width, settings.height), {}};
     inputs.view.center_x += 0.5f - position.x, inputs.view.center_y += 0.5f - position.y;
-    return render_hair(inputs, grooms, {}, stages, work);
+    Stages stages({});
+    return std::move(render_hair(std::span(&inputs, 1), grooms, {}, stages, work)[0]);
+  }
+
+  /// For the left and the right eye, which share their strands.
+  std::vector<HairPicture> stereo_hair(const RenderSettings& settings) const {
+    Scene with = scene;
+    with.settings = settings;
+    std::vector<FrameInputs> inputs;
+    for (const Camera& eye : stereo_eyes())
+      inputs.push_back({with, meshes, rig, make_camera_view(eye, settings.width, settings.height), {}});
+    Stages stages({});
+    return render_hair(inputs, grooms, {}, stages);
+  }
+
+  std::vector<Camera> stereo_eyes() const {
+    Camera both = scene.camera;
+    both.stereo = Stereo();
+    return eyes(both);
   }
 };
 
@@ -140,6 +159,31 @@ Workload frame_workload(const Shot& shot, const Kind& kind, bool lod) {
   return {.check = [in, settings] { return check_frame(*in, settings); }, .run = [in, settings] { in->hair(settings); }};
 }
 
+bool same_bits(const HairPicture& a, const HairPicture& b) {
+  return a.left == b.left && a.top == b.top && a.width == b.width && a.color.size() == b.color.size() &&
+         std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(Vec4)) == 0;
+}
+
+// The reference is a frame of each eye alone, at full detail: strands that level of detail selects are those of both eyes.
+std::string check_stereo(const Input& in, RenderSettings settings) {
+  settings.width = 480, settings.height = 270, settings.swr.lod = false;
+  const std::vector<HairPicture> both = in.stereo_hair(settings);
+  const std::vector<Camera> cameras = in.stereo_eyes();
+  for (std::size_t e = 0; e < cameras.size(); ++e) {
+    const CameraView view = make_camera_view(cameras[e], settings.width, settings.height);
+    if (!same_bits(both[e], in.hair(settings, nullptr, {0.5f, 0.5f}, &view))) return "not the bits of a frame of each eye";
+  }
+  return "";
+}
+
+/// Two eyes, each as many pixels as the one of the other cases.
+Workload stereo_workload(const Shot& shot, bool lod) {
+  auto in = input_of(shot);
+  const RenderSettings settings = settings_of(*in, kKinds[1], lod);
+  return {.check = [in, settings] { return check_stereo(*in, settings); },
+          .run = [in, settings] { in->stereo_hair(settings); }};
+}
+
 /// Hair over nothing: linear, premultiplied, of the size of the settings.
 Image picture_of(const HairPicture& hair, const RenderSettings& s) {
   Backdrop nothing;
@@ -179,7 +223,7 @@ Workload quality_workload(const Shot& shot, const Kind& kind, bool lod, const st
 std::string check_selection(const Input& in) {
   const CameraView view = make_camera_view(in.scene.camera, 1920, 1080);
   const PreparedHairMesh& prepared = *in.grooms.meshes[0].mesh;
-  for (const BundleDraw& draw : select_lod(in.scene, in.grooms.meshes, view).bundles) {
+  for (const BundleDraw& draw : select_lod(in.scene, in.grooms.meshes, std::span(&view, 1)).bundles) {
     const HairMesh::Bundle& bundle = prepared.mesh->bundles[draw.bundle];
     double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
     for (const std::uint32_t column : bundle.columns)
@@ -212,7 +256,8 @@ Workload strands_workload(const Shot& shot) {
 Workload prepass_workload(const Shot& shot) {
   auto in = input_of(shot);
   return {.check = [in] { return check_selection(*in); },
-          .run = [in] { select_lod(in->scene, in->grooms.meshes, make_camera_view(in->scene.camera, 1920, 1080)); }};
+          .run = [in, view = make_camera_view(in->scene.camera, 1920,
+                                              1080)] { select_lod(in->scene, in->grooms.meshes, std::span(&view, 1)); }};
 }
 
 /// What a frame shows of the hair, in sum over all pixels.
@@ -334,12 +379,17 @@ void add_swr_cases(Suite& suite) {
         for (const char* metric : {"flip", "mse"})
           suite.cases.push_back({at + "quality." + kind.name + (lod ? ".lod" : ".full"), metric, "1",
                                  [=] { return quality_workload(shot, kind, lod, metric); }});
+    for (const bool lod : {false, true})
+      suite.cases.push_back({at + (lod ? "stereo.lod" : "stereo.full"), "seconds_per_frame", "s",
+                             [shot, lod] { return stereo_workload(shot, lod); }});
     suite.cases.push_back({at + "prepass", "seconds_per_frame", "s", [shot] { return prepass_workload(shot); }});
     suite.cases.push_back({at + "strands", "share", "1", [shot] { return strands_workload(shot); }});
     suite.ratios.push_back({at + "lod_gain", {at + "filter.full"}, {at + "filter.lod"}});
     suite.ratios.push_back({at + "filter_over_msaa2", {at + "filter.full"}, {at + "msaa2.full"}});
     suite.ratios.push_back({at + "filter_over_msaa2.lod", {at + "filter.lod"}, {at + "msaa2.lod"}});
     suite.ratios.push_back({at + "conservative_share", {at + "filter.full"}, {at + "center.full"}});
+    suite.ratios.push_back({at + "stereo_over_single", {at + "stereo.full"}, {at + "filter.full"}});
+    suite.ratios.push_back({at + "stereo_over_single.lod", {at + "stereo.lod"}, {at + "filter.lod"}});
     suite.ratios.push_back({at + "prepass_share", {at + "prepass"}, {at + "filter.lod"}});
   }
   for (const std::string& style : hair_mesh_style_names())

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
 
 #include "io/atomic_file.h"
 
 namespace pelage::cli {
 namespace {
+
+constexpr std::string_view kEyePlace = "%V";
 
 // The first three of four channels.
 Image without_alpha(const Image& image) {
@@ -37,6 +40,18 @@ std::string numbered(const std::string& path, int number) {
   const std::size_t last = path.find_last_of('#'), before = path.find_last_not_of('#', last);
   const std::size_t first = before == std::string::npos ? 0 : before + 1;
   return path.substr(0, first) + fmt::format("{:0{}}", number, last + 1 - first) + path.substr(last + 1);
+}
+
+bool is_for_each_eye(const std::string& path) {
+  const std::size_t folder = path.find_last_of('/');
+  return path.find(kEyePlace, folder == std::string::npos ? 0 : folder) != std::string::npos;
+}
+
+std::string of_eye(std::string path, int eye) {
+  const std::size_t folder = path.find_last_of('/');
+  for (std::size_t at = folder == std::string::npos ? 0 : folder; (at = path.find(kEyePlace, at)) != std::string::npos;)
+    path.replace(at, kEyePlace.size(), eye == 0 ? "left" : "right");
+  return path;
 }
 
 void check_output(const std::string& path) {

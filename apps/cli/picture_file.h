@@ -15,6 +15,11 @@ bool is_numbered(const std::string& path);
 /// The path with the last run of # in its name replaced by `number`, with zeros to that width; others stay.
 std::string numbered(const std::string& path, int number);
 
+/// Whether the file's name has a place for an eye, "%V".
+bool is_for_each_eye(const std::string& path);
+/// The path with every %V in its name replaced by "left" (eye 0) or "right" (1).
+std::string of_eye(std::string path, int eye);
+
 /// Before long work: throws Error where no picture can be written to `path`. Opens what writing would open, and drops it.
 void check_output(const std::string& path);
 

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "composite/side_by_side.h"
 #include "core/check.h"
 #include "frame/sample_positions.h"
 #include "io/scene_tables.h"
@@ -55,12 +56,19 @@ void append_layers(const Scene& scene, const std::vector<std::string>& layers, c
   }
 }
 
+// One file, or with %V in its name one for each eye.
 void write_output(const std::string& path, const RenderOptions& options, const Scene& scene, const RenderResult& result,
                   const Progress& progress) {
-  if (write_flat_picture(path, result.linear, result.display, scene.settings.transparent_background)) return;
-  Image image = result.linear;
-  append_layers(scene, options.layers, progress, image);
-  write_image(path, image, options.full_float);
+  const bool more = extension_of(path) == "exr" && !options.layers.empty();
+  Image layered;
+  if (more) layered = result.linear, append_layers(scene, options.layers, progress, layered);
+  const Image& linear = more ? layered : result.linear;
+  const auto write = [&](const std::string& file, const Image& data, const Image& display) {
+    if (!write_flat_picture(file, data, display, scene.settings.transparent_background))
+      write_image(file, data, options.full_float);
+  };
+  if (!is_for_each_eye(path)) return write(path, linear, result.display);
+  for (const int eye : {0, 1}) write(of_eye(path, eye), part_of(linear, eye, 2), part_of(result.display, eye, 2));
 }
 
 void add_stats(std::vector<StageStat>& total, const std::vector<StageStat>& stats) {
@@ -97,7 +105,7 @@ RenderResult render_pictures(const RenderOptions& options, Scene scene, const Pr
     for (const std::string& path : options.outputs) {
       if (i + 1 < pictures && !is_numbered(path)) continue;
       write_output(numbered(path, i + 1), options, scene, result, progress);
-      ++writing.items;
+      writing.items += is_for_each_eye(path) ? 2 : 1;
     }
     writing.seconds += seconds_since(wrote);
   }
@@ -113,9 +121,16 @@ void write_gbuffer(const RenderOptions& options, const Scene& scene, const Progr
   write_image(options.gbuffer, render_gbuffer(linked, progress), true);
 }
 
+void check_eyes(const RenderOptions& options, const Camera& camera) {
+  for (const std::string& path : options.outputs)
+    if (is_for_each_eye(path) && !camera.stereo)
+      throw UsageError("--output", path, "%V stands for left or right, and there is one eye", "add --stereo");
+}
+
 void render_verb(const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  for (const std::string& path : options.outputs) check_output(numbered(path, 1));
+  for (const std::string& path : options.outputs)
+    for (const int eye : {0, 1}) check_output(of_eye(numbered(path, 1), eye));
   if (!options.gbuffer.empty()) check_gbuffer_output(options.gbuffer);
   std::vector<std::string> notes;
   RenderResult result;
@@ -124,6 +139,7 @@ void render_verb(const RenderOptions& options) {
     ProgressLine line;
     const Progress progress = line.callback();
     scene = make_scene(options, progress, notes);
+    check_eyes(options, scene.camera);
     const double read_seconds = seconds_since(start);
     if (!options.gbuffer.empty()) write_gbuffer(options, scene, progress);
     if (!options.outputs.empty()) result = render_pictures(options, scene, progress);
@@ -148,6 +164,13 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->check(CLI::Range(1, 4096));
   verb.add_option("--orbit", o.orbit, "Degrees that the camera goes around the target from picture to picture")
       ->check(CLI::Range(-360.0, 360.0));
+  verb.add_flag("--stereo{0.063}", o.stereo,
+                "Two eyes, 0.063 or so many meters apart: their pictures side by side, the left eye's on the left, or "
+                "in files of their own where an output has %V (left, right) in its name; 0: one eye")
+      ->type_name("[=METERS]");
+  verb.add_option("--convergence", o.convergence,
+                  "Meters from the eyes to what lies in the plane of the stereo picture; else as far as the target")
+      ->check(CLI::PositiveNumber);
   verb.add_option("--view", o.view,
                   "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo, motion; of strand linking: "
                   "linked (pixels that were hit and filled), alpha (opacity before the filter)")
@@ -215,6 +238,7 @@ void add_render(CLI::App& app) {
       "  pelage render hair.tfx -o turn.####.exr --method taa --orbit 0.5 --frames 48 --layers motion\n"
       "  pelage render hair.tfx -o linked.png --method link --alpha coverage\n"
       "  pelage render curls.hairmesh -o curls.png --method swr\n"
+      "  pelage render bob.hairmesh -o eye.%V.png --method swr --stereo=0.07\n"
       "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage\n"
       "A scene file may make hair: {\"grooms\": [{\"grow\": {\"style\": \"curly\"}}]}, or, as a hair mesh for --method swr,\n"
       "{\"grooms\": [{\"grow\": {\"hair_mesh\": \"curls\", \"strands\": 127000, \"seed\": 1}}]}; --schema prints all keys.");

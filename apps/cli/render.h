@@ -21,9 +21,10 @@ struct RenderOptions {
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
   std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment, environment_lighting;
+  std::optional<std::string> stereo;  // meters
   std::optional<float> kernel_size, kernel_radius, depth_sigma;
   std::optional<int> samples, frames, subdivisions, opacity_map_size;
-  std::optional<float> exposure, fov, turn, orbit, width_scale, environment_rotation;
+  std::optional<float> exposure, fov, turn, orbit, convergence, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;

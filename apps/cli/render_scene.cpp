@@ -42,7 +42,8 @@ std::vector<float> numbers(const char* option, const std::string& text, char sep
     if (*end == '\0' && values.size() == count) return values;
     if (*end != separator) break;
   }
-  throw UsageError(option, text, "not understood", fmt::format("give {} numbers separated by `{}`", count, separator));
+  throw UsageError(option, text, "not understood",
+                   count == 1 ? "give a number" : fmt::format("give {} numbers separated by `{}`", count, separator));
 }
 
 Vec3 vector(const char* option, const std::string& text) {
@@ -220,6 +221,13 @@ void apply_camera(const RenderOptions& o, Camera& camera) {
   if (!o.eye.empty()) camera.eye = vector(o.eye);
   if (!o.target.empty()) camera.target = vector(o.target);
   if (o.turn) camera = turned(camera, *o.turn);
+  if (o.stereo) {
+    Stereo stereo = camera.stereo.value_or(Stereo());
+    stereo.separation = numbers("--stereo", *o.stereo, ',', 1)[0];
+    camera.stereo = stereo.separation == 0 ? std::optional<Stereo>() : stereo;
+  }
+  if (o.convergence && !camera.stereo) throw UsageError("--convergence", "", "a picture of one eye has none", "add --stereo");
+  if (o.convergence) camera.stereo->convergence = *o.convergence;
 }
 
 void apply_environment(const RenderOptions& o, Environment& environment) {

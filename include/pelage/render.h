@@ -27,7 +27,8 @@ struct RenderResult {
   std::vector<StageStat> stats;  ///< in the order of the stages
 };
 
-/// Renders `scene.settings.view` of `scene`. Throws Error on settings out of range. The result has the same bits for
+/// Renders `scene.settings.view` of `scene`; what two eyes see side by side, the left one's on the left, each of the size of the
+/// settings. Throws Error on settings out of range. The result has the same bits for
 /// any number of threads (see set_thread_count() in <pelage/runtime.h>).
 RenderResult render(const Scene& scene, const Progress& progress = {});
 

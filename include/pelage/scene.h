@@ -13,6 +13,13 @@
 
 namespace pelage {
 
+/// Two eyes side by side that look the same way, in place of one. Of a point at depth z the left eye's picture shows
+/// separation·(1/z − 1/convergence)·(focal length in pixels) pixels farther to the right than the right eye's.
+struct Stereo {
+  float separation = 0.063f;  ///< metres between the eyes, > 0
+  float convergence = 0;  ///< metres before the eyes: what is there lies in the plane of the picture; 0: as far as the target
+};
+
 struct Camera {
   enum class Projection { kPerspective, kOrthographic };
   Projection projection = Projection::kPerspective;
@@ -22,7 +29,14 @@ struct Camera {
   float fov_y = 0.5f;         ///< radians, full vertical angle of the perspective camera, (0, π)
   float height = 0.5f;        ///< metres, full vertical extent of the orthographic camera, > 0
   float near_plane = 0.001f;  ///< metres in front of the eye, > 0; nearer things are clipped
+  float shift_x = 0;  ///< lens shift, −10…10: the picture shows what lies to the right by this share of its height …
+  float shift_y = 0;  ///< … and above by this one
+  std::optional<Stereo> stereo;  ///< the camera stands for two eyes: eyes()
 };
+
+/// The cameras that see what `camera` sees: itself, or the left and the right eye, which converge by lens shift and not by turning.
+/// Throws Error("camera", …) where a stereo camera is orthographic or its distances are out of range.
+std::vector<Camera> eyes(const Camera& camera);
 
 struct Light {
   enum class Type { kPoint, kSpot, kDirectional };

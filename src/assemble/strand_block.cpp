@@ -37,14 +37,8 @@ HWY_INLINE hn::Vec<wide::UintTag> bits(Float whole, int shift) {
                  hn::Set(wide::UintTag(), static_cast<std::uint32_t>(shift)));
 }
 
-/// Camera space and payload of all points. Returns whether some must be clipped.
-bool PlaceStrands(const StrandGroup& g, const StrandBlockJob& job, float widen, ScreenBlock& block) {
-  const CameraView& v = job.view;
-  const Float half(0.5f * job.width_scale * widen);
-  const Float reach =
-      kGuardBand + std::min(std::min(v.center_x, v.width - v.center_x), std::min(v.center_y, v.height - v.center_y));
-  const Mask perspective = Float(v.perspective ? 1.0f : 0.0f) > Float(0.0f);
-  Mask outside = Float(0.0f) > Float(1.0f);
+/// Payload of all points.
+void PackStrands(const StrandGroup& g, const PayloadJob& job, ScreenBlock& block) {
   const wide::UintTag u32;
   for (std::size_t l = 0; l < kStride; l += hn::Lanes(u32)) {
     const Float cells(static_cast<float>(job.cells.count));
@@ -53,12 +47,6 @@ bool PlaceStrands(const StrandGroup& g, const StrandBlockJob& job, float widen, 
                bits(wide::raster_cell(wide::load(&g.v[l]), cells) + Float(static_cast<float>(job.cells.first_v)), 12));
     for (std::size_t i = 0; i < g.points; ++i) {
       const std::size_t at = i * kStride + l;
-      const Vec3 p = transformed(job.to_camera, Vec3(wide::load(&g.x[at]), wide::load(&g.y[at]), wide::load(&g.z[at])), 1);
-      store(p.x, &block.x[at]), store(p.y, &block.y[at]), store(p.z, &block.depth[at]);
-      store(wide::load(&g.width[at]) * half, &block.radius[at]);
-      const Float most = Float(v.focal) * max(abs(p.x), abs(p.y));
-      outside = outside || p.z < Float(v.near_plane) || most > reach * select(perspective, p.z, Float(1.0f));
-
       const Vec3 t = transformed(job.to_world, Vec3(wide::load(&g.tx[at]), wide::load(&g.ty[at]), wide::load(&g.tz[at])), 0);
       const wide::Vec2 oct = wide::raster_octahedral(t);
       const float w = static_cast<float>(i) / static_cast<float>(g.points - 1);
@@ -69,11 +57,28 @@ bool PlaceStrands(const StrandGroup& g, const StrandBlockJob& job, float widen, 
       hn::StoreU(low, u32, &block.payload_low[at]);
     }
   }
+}
+
+/// Camera space of all points. Returns whether some must be clipped.
+bool PlaceStrands(const StrandGroup& g, const ProjectJob& job, float widen, ScreenBlock& block) {
+  const CameraView& v = job.view;
+  const Float half(0.5f * job.width_scale * widen);
+  const Float reach =
+      kGuardBand + std::min(std::min(v.center_x, v.width - v.center_x), std::min(v.center_y, v.height - v.center_y));
+  const Mask perspective = Float(v.perspective ? 1.0f : 0.0f) > Float(0.0f);
+  Mask outside = Float(0.0f) > Float(1.0f);
+  for (std::size_t at = 0; at < block.count; at += hn::Lanes(wide::UintTag())) {
+    const Vec3 p = transformed(job.to_camera, Vec3(wide::load(&g.x[at]), wide::load(&g.y[at]), wide::load(&g.z[at])), 1);
+    store(p.x, &block.x[at]), store(p.y, &block.y[at]), store(p.z, &block.depth[at]);
+    store(wide::load(&g.width[at]) * half, &block.radius[at]);
+    const Float most = Float(v.focal) * max(abs(p.x), abs(p.y));
+    outside = outside || p.z < Float(v.near_plane) || most > reach * select(perspective, p.z, Float(1.0f));
+  }
   return wide::any(outside);
 }
 
 /// Camera space → pixels, in place, and the caps.
-void ProjectStrands(const StrandBlockJob& job, std::size_t points, ScreenBlock& block) {
+void ProjectStrands(const ProjectJob& job, std::size_t points, ScreenBlock& block) {
   const CameraView& view = job.view;
   const Mask perspective = Float(view.perspective ? 1.0f : 0.0f) > Float(0.0f);
   for (std::size_t at = 0; at < block.count; at += hn::Lanes(wide::UintTag())) {
@@ -110,6 +115,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace pelage {
 
+HWY_EXPORT(PackStrands);
 HWY_EXPORT(PlaceStrands);
 HWY_EXPORT(ProjectStrands);
 
@@ -167,23 +173,25 @@ void project_pairs(const CameraView& view, ScreenBlock& pairs) {
 
 }  // namespace
 
-StrandBlockJob make_strand_block_job(const Scene& scene, const CameraView& view, const DeferredGroom& groom, std::size_t i,
-                                     std::size_t grooms) {
-  const GroomInstance& instance = scene.grooms[groom.groom];
-  return {view, compose(view.world_to_camera, instance.transform), instance.transform,
-          instance.width_scale * similarity_scale(instance.transform), uv_cells(i, grooms)};
+ProjectJob make_project_job(const CameraView& view, const GroomInstance& groom) {
+  return {view, compose(view.world_to_camera, groom.transform), groom.width_scale * similarity_scale(groom.transform)};
 }
 
-void assemble_group(const StrandGroup& group, const StrandBlockJob& job, float widen, ScreenBlock& block) {
-  reserve(block);
-  block.count = group.points * StrandGroup::kLanes, block.stride = StrandGroup::kLanes;
-  number_points(group, block);
-  if (!HWY_DYNAMIC_DISPATCH(PlaceStrands)(group, job, widen, block))
-    return HWY_DYNAMIC_DISPATCH(ProjectStrands)(job, group.points, block);
-  thread_local ScreenBlock pairs;
-  clip_pairs(job.view, block, pairs);
-  project_pairs(job.view, pairs);
-  std::swap(block, pairs);
+void pack_group(const StrandGroup& group, const PayloadJob& job, StrandBlock& block) {
+  reserve(block.points);
+  block.points.count = group.points * StrandGroup::kLanes, block.points.stride = StrandGroup::kLanes;
+  number_points(group, block.points);
+  HWY_DYNAMIC_DISPATCH(PackStrands)(group, job, block.points);
+}
+
+const ScreenBlock& project_group(const StrandGroup& group, const ProjectJob& job, float widen, StrandBlock& block) {
+  if (!HWY_DYNAMIC_DISPATCH(PlaceStrands)(group, job, widen, block.points)) {
+    HWY_DYNAMIC_DISPATCH(ProjectStrands)(job, group.points, block.points);
+    return block.points;
+  }
+  clip_pairs(job.view, block.points, block.pairs);
+  project_pairs(job.view, block.pairs);
+  return block.pairs;
 }
 
 }  // namespace pelage

@@ -9,6 +9,8 @@
 namespace pelage {
 namespace {
 
+constexpr float kMostShift = 10;  // heights of the picture
+
 [[noreturn]] void fail(const char* what, float value, const char* remedy) {
   throw Error("camera", what, fmt::format("{} is out of range", value), remedy);
 }
@@ -23,9 +25,54 @@ void check_camera(const Camera& camera) {
   }
   if (!is_finite(camera.eye) || !is_finite(camera.target) || camera.eye == camera.target)
     throw Error("camera", "target", "eye and target coincide or are not finite", "give two different points");
+  if (!(std::fabs(camera.shift_x) <= kMostShift)) fail("shift_x", camera.shift_x, "-10…10");
+  if (!(std::fabs(camera.shift_y) <= kMostShift)) fail("shift_y", camera.shift_y, "-10…10");
+}
+
+/// The way that a camera looks, and where right and down of the picture lie.
+struct Axes {
+  Vec3 right, down, forward;
+};
+
+Axes axes_of(const Camera& camera) {
+  const Vec3 forward = normalize(camera.target - camera.eye);
+  Vec3 side = cross(forward, normalize(camera.up));
+  if (!(dot(side, side) > 1e-10f)) side = cross(forward, std::fabs(forward.y) < 0.9f ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
+  const Vec3 right = normalize(side);
+  return {right, cross(forward, right), forward};
+}
+
+void check_stereo(const Stereo& stereo) {
+  if (!(stereo.separation > 0) || !std::isfinite(stereo.separation))
+    fail("stereo.separation", stereo.separation, "give a distance above 0 meters");
+  if (!(stereo.convergence >= 0) || !std::isfinite(stereo.convergence))
+    fail("stereo.convergence", stereo.convergence, "give a distance above 0 meters, or 0 for that of the target");
 }
 
 }  // namespace
+
+std::vector<Camera> eyes(const Camera& camera) {
+  if (!camera.stereo) return {camera};
+  check_stereo(*camera.stereo);
+  if (camera.projection != Camera::Projection::kPerspective)
+    throw Error("camera", "stereo", "two eyes see the same in an orthographic picture", "use a perspective camera");
+  check_camera(camera);
+  const float half = 0.5f * camera.stereo->separation;
+  const float distance = length(camera.target - camera.eye);
+  const float convergence = camera.stereo->convergence > 0 ? camera.stereo->convergence : distance;
+  const float shift = half / (2 * convergence * std::tan(0.5f * camera.fov_y));
+  const Vec3 right = axes_of(camera).right;
+  const auto eye = [&](float side) {
+    Camera one = camera;
+    one.stereo.reset();
+    one.eye += right * (side * half), one.target += right * (side * half);
+    one.shift_x -= side * shift;
+    if (!(std::fabs(one.shift_x) <= kMostShift))
+      fail("stereo.convergence", convergence, "give a distance that is larger beside the separation of the eyes");
+    return one;
+  };
+  return {eye(-1), eye(1)};
+}
 
 Affine compose(const Affine& a, const Affine& b) {
   Affine r;
@@ -39,11 +86,11 @@ float similarity_scale(const Affine& a) { return length(Vec3(a.m[0][0], a.m[1][0
 
 CameraView make_camera_view(const Camera& camera, int width, int height) {
   PELAGE_CHECK(width > 0 && height > 0);
+  if (camera.stereo)
+    throw Error("camera", "stereo", "two eyes, where the picture of one is made",
+                "give each of eyes() by itself, or use `pelage render`");
   check_camera(camera);
-  const Vec3 forward = normalize(camera.target - camera.eye);
-  Vec3 side = cross(forward, normalize(camera.up));
-  if (!(dot(side, side) > 1e-10f)) side = cross(forward, std::fabs(forward.y) < 0.9f ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
-  const Vec3 right = normalize(side), down = cross(forward, right);
+  const auto [right, down, forward] = axes_of(camera);
 
   CameraView view;
   const Vec3 axes[3] = {right, down, forward};
@@ -64,8 +111,8 @@ CameraView make_camera_view(const Camera& camera, int width, int height) {
   view.perspective = camera.projection == Camera::Projection::kPerspective;
   view.focal = view.perspective ? 0.5f * static_cast<float>(height) / std::tan(0.5f * camera.fov_y)
                                 : static_cast<float>(height) / camera.height;
-  view.center_x = 0.5f * static_cast<float>(width);
-  view.center_y = 0.5f * static_cast<float>(height);
+  view.center_x = 0.5f * static_cast<float>(width) - camera.shift_x * static_cast<float>(height);
+  view.center_y = 0.5f * static_cast<float>(height) + camera.shift_y * static_cast<float>(height);
   view.near_plane = camera.near_plane;
   view.width = width;
   view.height = height;

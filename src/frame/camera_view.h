@@ -9,7 +9,8 @@
 namespace pelage {
 
 /// The view of `camera` on an image of width × height pixels (square pixels; `fov_y` and `height` span the height).
-/// Throws Error("camera", …) where an angle, a height or the near plane is out of range, or eye and target coincide.
+/// Throws Error("camera", …) where an angle, a height or the near plane is out of range, or eye and target coincide, or
+/// the camera stands for two eyes.
 /// An `up` along the view direction is replaced by another axis.
 CameraView make_camera_view(const Camera& camera, int width, int height);
 

@@ -45,10 +45,14 @@ struct BundleDraw {
   std::uint32_t strands = 0;            ///< N_LOD of Lipp 2026, eq. 1: the first ones
   std::uint32_t points = 0;             ///< C of eq. 5, of each
   float width_scale = 1;                ///< by which strands are wider, for those that are left out
-  float nearest = 0;                    ///< metres, camera depth of its box
+  float nearest = 0;                    ///< metres, camera depth of its box; of several views the least
+  std::uint32_t views = 1;              ///< bit v: view v may see it
 };
 
-/// What lod makes of all bundles: those in view, nearest first.
+/// Views that may share their strands.
+inline constexpr std::size_t kMostViews = 32;
+
+/// What lod makes of all bundles: those that some view may see, nearest first.
 struct LodSelection {
   std::vector<BundleDraw> bundles;
   std::uint64_t strands = 0, points = 0;  ///< of all of them

@@ -1,9 +1,10 @@
-// One frame of method swr: deferred software rasterization of hair meshes (Lipp 2026).
+// A frame of method swr: deferred software rasterization of hair meshes (Lipp 2026).
 #pragma once
 
 #include <pelage/image.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "frame/deferred.h"
@@ -24,17 +25,19 @@ DeferredGrooms prepare_deferred(const Scene& scene);
 /// `scene` with strands in place of its hair meshes that suffice for maps of light: a few thousand of each, widened for the rest.
 Scene light_stand_in(const Scene& scene);
 
-/// What render_hair() counts, besides the hair.
+/// What render_hair() counts, besides the hair, in all views.
 struct HairWork {
   std::uint64_t strands = 0, points = 0, evaluations = 0;
 };
 
-/// The hair of the scene, without its background: lod, raster, shade and filter. opaque_depth: of the whole picture, camera z,
-/// [height · width · samples], or empty.
-HairPicture render_hair(const FrameInputs& inputs, const DeferredGrooms& grooms, const Buffer<float>& opaque_depth,
-                        Stages& stages, HairWork* work = nullptr);
+/// The hair of the scene as each of `views` sees it, without its background: lod and raster for all of them at once, then shade and
+/// filter for one after the other.
+///
+/// views: of one scene and its lights, 1…kMostViews; opaque: what hides hair, one a view, or none.
+std::vector<HairPicture> render_hair(std::span<const FrameInputs> views, const DeferredGrooms& grooms,
+                                     std::span<const OpaqueLayer> opaque, Stages& stages, HairWork* work = nullptr);
 
-/// The scene, linear: R, G, B, A, premultiplied.
-Image render_deferred(const FrameInputs& inputs, const DeferredGrooms& grooms, Stages& stages);
+/// The scene as each of `views` sees it, linear: R, G, B, A, premultiplied.
+std::vector<Image> render_deferred(std::span<const FrameInputs> views, const DeferredGrooms& grooms, Stages& stages);
 
 }  // namespace pelage

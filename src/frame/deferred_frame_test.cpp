@@ -8,7 +8,9 @@
 
 #include <cmath>
 
+#include "composite/side_by_side.h"
 #include "kit/hair_mesh_scene.h"
+#include "raster/test_scene.h"
 
 namespace pelage {
 namespace {
@@ -75,6 +77,59 @@ TEST(DeferredFrame, SameBitsForAnyNumberOfThreads) {
   set_thread_count(3);
   const Image three = picture(scene, Method::kSwr, 1);
   set_thread_count(0);
+  EXPECT_EQ(one.pixels, three.pixels);
+}
+
+/// What both eyes see of `scene`, and what each of them does alone.
+struct Eyes {
+  Image together, left, right;
+};
+
+Eyes see(Scene scene) {
+  Eyes seen;
+  seen.together = render(scene).linear;
+  const std::vector<Camera> cameras = eyes(scene.camera);
+  scene.camera = cameras[0], seen.left = render(scene).linear;
+  scene.camera = cameras[1], seen.right = render(scene).linear;
+  return seen;
+}
+
+// Strands that are made once show what each eye sees alone; the left one sees bundles that the right one does not.
+TEST(DeferredFrame, EyesSeeWhatEachSeesAlone) {
+  Scene scene = tuft();
+  scene.camera.stereo = Stereo{.separation = 0.1f, .convergence = 1.2f};
+  scene.camera.target.x += 0.13f;
+  scene.settings.swr.lod = false;
+  test::add_tile(scene);
+  for (const int samples : {1, 4})
+    for (const SwrAlpha alpha : {SwrAlpha::kRatio, SwrAlpha::kCoverage}) {
+      scene.settings.samples = samples, scene.settings.swr.alpha = alpha;
+      const Eyes seen = see(scene);
+      EXPECT_EQ(part_of(seen.together, 0, 2).pixels, seen.left.pixels) << samples;
+      EXPECT_EQ(part_of(seen.together, 1, 2).pixels, seen.right.pixels) << samples;
+      EXPECT_NE(seen.left.pixels, seen.right.pixels);
+    }
+}
+
+// With level of detail both eyes show the strands that the one which asks for more does: alike, and not the same bits.
+TEST(DeferredFrame, EyesShareTheirLevelOfDetail) {
+  Scene scene = tuft();
+  scene.camera.stereo = Stereo();
+  scene.camera.eye = scene.camera.target + 4.f * (scene.camera.eye - scene.camera.target);
+  const Eyes seen = see(scene);
+  EXPECT_LT(mean_square(part_of(seen.together, 0, 2), seen.left), 1e-4);
+  EXPECT_LT(mean_square(part_of(seen.together, 1, 2), seen.right), 1e-4);
+}
+
+TEST(DeferredFrame, EyesHaveTheSameBitsForAnyNumberOfThreads) {
+  Scene scene = tuft();
+  scene.camera.stereo = Stereo();
+  set_thread_count(1);
+  const Image one = picture(scene, Method::kSwr, 1);
+  set_thread_count(3);
+  const Image three = picture(scene, Method::kSwr, 1);
+  set_thread_count(0);
+  EXPECT_EQ(one.width, 2 * scene.settings.width);
   EXPECT_EQ(one.pixels, three.pixels);
 }
 

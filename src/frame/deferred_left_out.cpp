@@ -11,6 +11,6 @@ DeferredGrooms prepare_deferred(const Scene&) {
 }
 DeferredMaterials::DeferredMaterials(const Scene&, std::span<const DeferredGroom>, const LightRig&) {}
 Scene light_stand_in(const Scene& scene) { return scene; }
-Image render_deferred(const FrameInputs&, const DeferredGrooms&, Stages&) { return {}; }
+std::vector<Image> render_deferred(std::span<const FrameInputs>, const DeferredGrooms&, Stages&) { return {}; }
 
 }  // namespace pelage

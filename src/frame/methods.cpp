@@ -10,6 +10,7 @@
 #include "assemble/assemble.h"
 #include "composite/composite.h"
 #include "composite/debug_view.h"
+#include "core/check.h"
 #include "filter/frame_mean.h"
 #include "filter/fxaa.h"
 #include "filter/oidn.h"
@@ -165,17 +166,12 @@ Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages) {
   });
 }
 
-}  // namespace
-
-MethodState::MethodState() = default;
-MethodState::~MethodState() = default;
-MethodState::MethodState(MethodState&&) noexcept = default;
-MethodState& MethodState::operator=(MethodState&&) noexcept = default;
-
-Beauty render_beauty(const FrameInputs& inputs, MethodState& state, Stages& stages) {
+/// What one view sees, by any method that draws strands.
+Beauty render_view(const FrameInputs& inputs, MethodState& state, Stages& stages) {
   const ToneMap tone_map = inputs.scene.settings.tone_map;
   switch (inputs.scene.settings.method) {
-    case Method::kMsaa: break;
+    case Method::kMsaa:
+    case Method::kSwr: break;
     case Method::kSsaa: return displayed(supersampled(inputs, stages), tone_map, stages);
     case Method::kTaa:
     case Method::kLinkTaa: return displayed(temporal(inputs, state, stages), tone_map, stages);
@@ -183,9 +179,33 @@ Beauty render_beauty(const FrameInputs& inputs, MethodState& state, Stages& stag
     case Method::kSmaa: return morphological(inputs, stages);
     case Method::kLink: return displayed(linked(inputs, stages), tone_map, stages);
     case Method::kOidn: return displayed(denoised(inputs, stages), tone_map, stages);
-    case Method::kSwr: return displayed(render_deferred(inputs, state.grooms, stages), tone_map, stages);
   }
   return displayed(multisampled(inputs, stages), tone_map, stages);
+}
+
+}  // namespace
+
+MethodState::MethodState() = default;
+MethodState::~MethodState() = default;
+MethodState::MethodState(MethodState&&) noexcept = default;
+MethodState& MethodState::operator=(MethodState&&) noexcept = default;
+
+std::vector<Beauty> render_beauty(std::span<const FrameInputs> views, std::span<MethodState> states,
+                                  const DeferredGrooms& grooms, Stages& stages) {
+  PELAGE_CHECK(!views.empty() && views.size() == states.size());
+  const RenderSettings& settings = views[0].scene.settings;
+  std::vector<Beauty> pictures;
+  if (settings.method == Method::kSwr) {
+    for (Image& linear : render_deferred(views, grooms, stages))
+      pictures.push_back(displayed(std::move(linear), settings.tone_map, stages));
+    return pictures;
+  }
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    stages.set_view(v, views.size());
+    pictures.push_back(render_view(views[v], states[v], stages));
+  }
+  stages.set_view(0, 1);
+  return pictures;
 }
 
 }  // namespace pelage

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "frame/deferred_frame.h"
 #include "frame/one_frame.h"
@@ -13,7 +15,7 @@ namespace pelage {
 
 class TaaHistory;
 
-/// What goes on from picture to picture of a sequence.
+/// What goes on from picture to picture of a sequence, of one view.
 struct MethodState {
   MethodState();
   ~MethodState();
@@ -22,7 +24,6 @@ struct MethodState {
 
   std::unique_ptr<TaaHistory> history;  ///< null before the first picture
   std::uint32_t next_frame = 0;         ///< place in the sequence of jitters
-  DeferredGrooms grooms;                ///< of method swr, prepared once
 };
 
 /// The same picture for further work and for a display, as in RenderResult.
@@ -30,7 +31,9 @@ struct Beauty {
   Image linear, display;
 };
 
-/// The picture of `inputs.scene` that its settings' method makes. Throws Error where the build lacks the method.
-Beauty render_beauty(const FrameInputs& inputs, MethodState& state, Stages& stages);
+/// What each of `views` sees of their one scene, by the method of its settings: views of method swr share the strands of `grooms`,
+/// others are made one after the other. states: one a view. Throws Error where the build lacks the method.
+std::vector<Beauty> render_beauty(std::span<const FrameInputs> views, std::span<MethodState> states,
+                                  const DeferredGrooms& grooms, Stages& stages);
 
 }  // namespace pelage

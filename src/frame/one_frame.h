@@ -4,6 +4,7 @@
 #include <pelage/image.h>
 #include <pelage/scene.h>
 
+#include <optional>
 #include <span>
 
 #include "core/buffer.h"
@@ -22,6 +23,7 @@ struct FrameInputs {
   const LightRig& rig;
   CameraView view;
   SegmentNumbering numbering;
+  std::optional<CameraView> previous = {};  ///< where the view was a frame ago, for motion vectors; none: it stood still
 };
 
 /// The scene with samples at `positions` of every pixel, 1, 2, 4, 8 or 16 of them: R, G, B, A, linear, premultiplied.

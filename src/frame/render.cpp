@@ -11,6 +11,7 @@
 #include "assemble/assemble.h"
 #include "composite/composite.h"
 #include "composite/debug_view.h"
+#include "composite/side_by_side.h"
 #include "core/mesh_tracer.h"
 #include "filter/motion.h"
 #include "filter/oidn.h"
@@ -82,8 +83,7 @@ DebugView render_motion_view(const FrameInputs& inputs, Stages& stages) {
   const Buffer<float> depth = render_nearest(inputs, stages);
   DebugView view;
   stages.run("filter.motion", "pixels", [&](const Progress&) {
-    const Camera& before = inputs.scene.previous_camera ? *inputs.scene.previous_camera : inputs.scene.camera;
-    const Buffer<Vec2> motion = motion_vectors(inputs.view, make_camera_view(before, settings.width, settings.height), depth);
+    const Buffer<Vec2> motion = motion_vectors(inputs.view, inputs.previous.value_or(inputs.view), depth);
     view.data = motion_data(motion, depth, settings.width, settings.height);
     view.display = motion_display(motion, depth, settings.width, settings.height);
     return StageWork{motion.size(), motion.bytes()};
@@ -107,12 +107,25 @@ struct PictureSequence::State {
   Scene scene;
   MeshTracer meshes;
   std::optional<LightRig> rig;
-  MethodState method;
+  DeferredGrooms grooms;             // of method swr, prepared once
+  std::vector<MethodState> methods;  // one an eye
 
   explicit State(Scene s) : scene(std::move(s)), meshes(scene.meshes) {
     // Strands of hair meshes are only made where something looks at strands.
-    if (draws_hair_meshes(scene.settings)) method.grooms = prepare_deferred(scene);
+    if (draws_hair_meshes(scene.settings)) grooms = prepare_deferred(scene);
     else expand_hair_meshes(scene);
+  }
+
+  /// Made at the first call.
+  const LightRig& lights(Stages& stages) {
+    if (rig) return *rig;
+    stages.run("light", "maps", [&](const Progress&) {
+      const bool hair_meshes = draws_hair_meshes(scene.settings);
+      rig = prepare_lights(hair_meshes ? light_stand_in(scene) : scene, meshes);
+      if (hair_meshes) grooms.materials = {scene, grooms.meshes, *rig};
+      return StageWork{rig->lights.size(), resident_bytes(*rig)};
+    });
+    return *rig;
   }
 };
 
@@ -128,33 +141,32 @@ PictureSequence& PictureSequence::operator=(PictureSequence&&) noexcept = defaul
 RenderResult PictureSequence::next(const Camera& camera, const Progress& progress) {
   Scene& scene = state_->scene;
   const RenderSettings& settings = scene.settings;
+  const std::vector<Camera> now = eyes(camera), before = eyes(scene.previous_camera.value_or(camera));
   scene.camera = camera;
   Stages stages(progress);
   stages.note("groom", draws_hair_meshes(settings) ? "vertices" : "points", groom_work(scene));
-  const CameraView view = make_camera_view(camera, settings.width, settings.height);
   const bool beauty = settings.view == View::kBeauty;
-  if (beauty && !state_->rig)
-    stages.run("light", "maps", [&](const Progress&) {
-      const bool meshes = draws_hair_meshes(settings);
-      state_->rig = prepare_lights(meshes ? light_stand_in(scene) : scene, state_->meshes);
-      if (meshes) state_->method.grooms.materials = {scene, state_->method.grooms.meshes, *state_->rig};
-      return StageWork{state_->rig->lights.size(), resident_bytes(*state_->rig)};
-    });
-
-  const LightRig dark;
-  const FrameInputs inputs{scene, state_->meshes, beauty ? *state_->rig : dark, view,
-                           draws_hair_meshes(settings) ? SegmentNumbering() : number_segments(scene, view)};
-  RenderResult result;
-  if (beauty) {
-    Beauty picture = render_beauty(inputs, state_->method, stages);
-    result.linear = std::move(picture.linear), result.display = std::move(picture.display);
-  } else {
-    DebugView debug = render_unlit_view(inputs, stages);
-    result.linear = std::move(debug.data), result.display = std::move(debug.display);
+  const LightRig dark, &rig = beauty ? state_->lights(stages) : dark;
+  std::vector<FrameInputs> views;
+  for (std::size_t e = 0; e < now.size(); ++e) {
+    const CameraView view = make_camera_view(now[e], settings.width, settings.height);
+    views.push_back(
+        {scene, state_->meshes, rig, view, draws_hair_meshes(settings) ? SegmentNumbering() : number_segments(scene, view)});
+    if (before.size() == now.size()) views[e].previous = make_camera_view(before[e], settings.width, settings.height);
   }
+  state_->methods.resize(now.size());
+
+  std::vector<Image> linear, display;
+  if (beauty)
+    for (Beauty& picture : render_beauty(views, state_->methods, state_->grooms, stages))
+      linear.push_back(std::move(picture.linear)), display.push_back(std::move(picture.display));
+  else
+    for (const FrameInputs& view : views) {
+      DebugView picture = render_unlit_view(view, stages);
+      linear.push_back(std::move(picture.data)), display.push_back(std::move(picture.display));
+    }
   scene.previous_camera = camera;
-  result.stats = stages.take();
-  return result;
+  return {side_by_side(std::move(linear)), side_by_side(std::move(display)), stages.take()};
 }
 
 RenderResult render(const Scene& scene, const Progress& progress) {

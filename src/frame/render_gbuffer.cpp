@@ -121,6 +121,7 @@ Image render_gbuffer(const Scene& scene, const Progress& progress) {
   check_settings(settings);
   const int side = static_cast<int>(std::lround(std::sqrt(static_cast<float>(settings.samples))));
   settings.width *= side, settings.height *= side;
+  const CameraView view = make_camera_view(linked.camera, settings.width, settings.height);
   const MeshTracer meshes(linked.meshes);
   Stages stages(progress);
   LightRig rig;
@@ -128,7 +129,6 @@ Image render_gbuffer(const Scene& scene, const Progress& progress) {
     rig = prepare_lights(linked, meshes);
     return StageWork{rig.lights.size(), 0};
   });
-  const CameraView view = make_camera_view(linked.camera, settings.width, settings.height);
   const FrameInputs inputs{linked, meshes, rig, view, number_segments(linked, view)};
   return picture_of(linked, render_strand_layer(inputs, side, settings.link.alpha == LinkAlpha::kCoverage, stages));
 }

@@ -8,7 +8,8 @@ namespace pelage {
 
 bool Stages::report(const char* name, double share) const {
   const double of_pass = (band_ + std::clamp(share, 0.0, 1.0)) / band_count_;
-  return !progress_ || progress_(name, (pass_ + of_pass) / pass_count_);
+  const double of_view = (pass_ + of_pass) / pass_count_;
+  return !progress_ || progress_(name, (static_cast<double>(view_) + of_view) / static_cast<double>(view_count_));
 }
 
 void Stages::tell(const char* name, double share) const {

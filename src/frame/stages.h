@@ -5,6 +5,7 @@
 #include <pelage/render.h>
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ struct StageWork {
 };
 
 /// Runs stages one after another and keeps their statistics. A stage that runs once for every band of a picture, or frame
-/// of several that make one, has one row: times and items add up, bytes are the largest of a run.
+/// of several that make one, or view of several, has one row: times and items add up, bytes are the largest of a run.
 class Stages {
  public:
   explicit Stages(Progress progress) : progress_(std::move(progress)) {}
@@ -27,6 +28,8 @@ class Stages {
   void set_band(int band, int count) { band_ = band, band_count_ = count; }
   /// … and the bands are those of frame `pass` of `count` that make one picture.
   void set_pass(int pass, int count) { pass_ = pass, pass_count_ = count; }
+  /// … and the picture is what view `view` of `count` sees, where they are made one after the other.
+  void set_view(std::size_t view, std::size_t count) { view_ = view, view_count_ = count; }
 
   /// Calls work(progress) → StageWork as stage `name`. Throws Error when the listener cancels.
   template <class Work>
@@ -51,6 +54,7 @@ class Stages {
   Progress progress_;
   std::vector<StageStat> stats_;
   int band_ = 0, band_count_ = 1, pass_ = 0, pass_count_ = 1;
+  std::size_t view_ = 0, view_count_ = 1;
 };
 
 }  // namespace pelage

@@ -30,6 +30,15 @@ Field<T> nested(U T::*part, Field<U> field) {
           [part, read = std::move(field.read)](const JsonValue& v, T& out) { read(v, out.*part); }, field.is_required};
 }
 
+const Fields<Stereo>& stereo_fields() {
+  static const Fields<Stereo> table{
+      number_field("separation", "Meters between the eyes; those of people are 0.063 apart", &Stereo::separation, 1e-6, kFar),
+      number_field("convergence", "Meters before the eyes to what lies in the plane of the picture; 0: to the target",
+                   &Stereo::convergence, 0, kFar),
+  };
+  return table;
+}
+
 const Fields<Camera>& camera_fields() {
   static const Names<Camera::Projection> projections{{"perspective", Camera::Projection::kPerspective},
                                                      {"orthographic", Camera::Projection::kOrthographic}};
@@ -41,6 +50,12 @@ const Fields<Camera>& camera_fields() {
       number_field("fov", "Full vertical angle of the perspective camera, degrees", &Camera::fov_y, 0.01, 179, kDegree),
       number_field("height", "Full vertical extent of the orthographic camera, meters", &Camera::height, 1e-6, kFar),
       number_field("near", "Nearer things are clipped, meters", &Camera::near_plane, 1e-6, kFar),
+      number_field("shift_x", "Lens shift: heights of the picture by which it shows what lies to the right", &Camera::shift_x,
+                   -10, 10),
+      number_field("shift_y", "Lens shift: heights of the picture by which it shows what lies above", &Camera::shift_y, -10,
+                   10),
+      optional_object_field("stereo", "Two eyes in place of one: their pictures side by side", &Camera::stereo,
+                            stereo_fields()),
   };
   return table;
 }

@@ -142,6 +142,22 @@ TEST_F(SceneFile, MaterialsOfChiangAndSadeghi) {
   EXPECT_NEAR(a.glint_width, 0.0872665f, 1e-6f);
 }
 
+TEST_F(SceneFile, CamerasMayHaveTwoEyesAndAShiftedLens) {
+  const auto camera_with = [&](const std::string& keys) {
+    return read(R"({"camera": {"eye": [0, 0, 1], "target": [0, 0, 0])" + keys + "}}").camera;
+  };
+  EXPECT_FALSE(camera_with("").stereo);
+  EXPECT_EQ(camera_with(R"(, "stereo": {})").stereo->separation, 0.063f);
+  const Camera camera = camera_with(R"(, "stereo": {"separation": 0.07, "convergence": 1.5}, "shift_x": 0.2, "shift_y": -0.1)");
+  EXPECT_EQ(camera.stereo->separation, 0.07f);
+  EXPECT_EQ(camera.stereo->convergence, 1.5f);
+  EXPECT_EQ(camera.shift_x, 0.2f);
+  EXPECT_EQ(camera.shift_y, -0.1f);
+  EXPECT_THROW(camera_with(R"(, "stereo": {"separation": 0})"), Error);
+  EXPECT_THROW(camera_with(R"(, "stereo": {"convergence": -1})"), Error);
+  EXPECT_THROW(camera_with(R"(, "shift_x": 11)"), Error);
+}
+
 TEST_F(SceneFile, EveryValueArrives) {
   std::ofstream(folder_ / "strand.obj") << "v 0 0 0\nv 0 0.1 0\nv 0.1 0 0\nf 1 2 3\n";
   const Scene scene = read(R"({

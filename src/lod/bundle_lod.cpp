@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/bounds.h"
+#include "core/check.h"
 #include "core/parallel.h"
 #include "frame/camera_view.h"
 #include "groom/hairmesh/prepared.h"
@@ -50,7 +51,7 @@ ScreenBox strand_box(const Bounds& b, const Affine& to_camera, const CameraView&
   return box;
 }
 
-/// Strands and points of one bundle; 0 strands where it is out of view.
+/// Strands and points of one bundle for one view; 0 strands where it is out of view.
 BundleDraw choose(const GroomInstance& groom, const PreparedHairMesh& prepared, std::size_t bundle, const Affine& to_camera,
                   const CameraView& view, const SwrSettings& settings) {
   const HairMesh& mesh = *prepared.mesh;
@@ -72,18 +73,36 @@ BundleDraw choose(const GroomInstance& groom, const PreparedHairMesh& prepared, 
   return draw;
 }
 
+/// … for all views: what the one that asks for the most does.
+BundleDraw choose(const GroomInstance& groom, const PreparedHairMesh& prepared, std::size_t bundle,
+                  std::span<const Affine> to_camera, std::span<const CameraView> views, const SwrSettings& settings) {
+  BundleDraw all;
+  all.nearest = INFINITY, all.width_scale = INFINITY, all.views = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const BundleDraw one = choose(groom, prepared, bundle, to_camera[v], views[v], settings);
+    if (one.strands == 0) continue;
+    all.strands = std::max(all.strands, one.strands), all.points = std::max(all.points, one.points);
+    all.width_scale = std::min(all.width_scale, one.width_scale);  // more strands, less wide
+    all.nearest = std::min(all.nearest, one.nearest);
+    all.views |= 1u << v;
+  }
+  return all;
+}
+
 }  // namespace
 
-LodSelection select_lod(const Scene& scene, std::span<const DeferredGroom> grooms, const CameraView& view) {
+LodSelection select_lod(const Scene& scene, std::span<const DeferredGroom> grooms, std::span<const CameraView> views) {
+  PELAGE_CHECK(!views.empty() && views.size() <= kMostViews);
   LodSelection selection;
   for (std::size_t g = 0; g < grooms.size(); ++g) {
     const GroomInstance& groom = scene.grooms[grooms[g].groom];
     const PreparedHairMesh& prepared = *grooms[g].mesh;
-    const Affine to_camera = compose(view.world_to_camera, groom.transform);
+    std::vector<Affine> to_camera;
+    for (const CameraView& view : views) to_camera.push_back(compose(view.world_to_camera, groom.transform));
     std::vector<BundleDraw> draws(prepared.cages.size());
     parallel_for(draws.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
-        draws[b] = choose(groom, prepared, b, to_camera, view, scene.settings.swr);
+        draws[b] = choose(groom, prepared, b, to_camera, views, scene.settings.swr);
         draws[b].groom = static_cast<std::uint32_t>(g), draws[b].bundle = static_cast<std::uint32_t>(b);
       }
     });

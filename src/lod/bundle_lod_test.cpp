@@ -17,7 +17,8 @@ using testing::hair_mesh_scene;
 using testing::small_hair_mesh;
 
 LodSelection select(const Scene& scene, int width = 320, int height = 240) {
-  return select_lod(scene, deferred_grooms(scene), make_camera_view(scene.camera, width, height));
+  const CameraView view = make_camera_view(scene.camera, width, height);
+  return select_lod(scene, deferred_grooms(scene), std::span(&view, 1));
 }
 
 // Lipp 2026, eq. 1, 2, 4 and 5, by hand.
@@ -69,6 +70,30 @@ TEST(BundleLod, ABundleOutOfViewIsLeftOut) {
   EXPECT_EQ(select(scene).bundles.size(), 0u);
   scene.camera.target = scene.camera.eye + Vec3(1, 0, -1);
   EXPECT_EQ(select(scene).bundles.size(), 0u);
+}
+
+// Several views show as much of a bundle as the one that asks for the most; who sees it is told.
+TEST(BundleLod, ViewsShareWhatOneAsksFor) {
+  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator(), 2, 5, 4000));
+  const auto grooms = deferred_grooms(scene);
+  std::vector<CameraView> views;
+  for (const float distance : {8.f, 2.f, 32.f}) {
+    scene.camera.eye = {0, 0.1f, distance};
+    views.push_back(make_camera_view(scene.camera, 320, 240));
+  }
+  scene.camera.target = scene.camera.eye + Vec3(0, 0, 1);  // looks away
+  views.push_back(make_camera_view(scene.camera, 320, 240));
+  const LodSelection all = select_lod(scene, grooms, views), nearest = select_lod(scene, grooms, std::span(&views[1], 1));
+  ASSERT_EQ(all.bundles.size(), 4u);
+  EXPECT_EQ(all.strands, nearest.strands);
+  EXPECT_EQ(all.points, nearest.points);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(all.bundles[i].strands, nearest.bundles[i].strands);
+    EXPECT_EQ(all.bundles[i].points, nearest.bundles[i].points);
+    EXPECT_EQ(all.bundles[i].width_scale, nearest.bundles[i].width_scale);
+    EXPECT_EQ(all.bundles[i].nearest, nearest.bundles[i].nearest);
+    EXPECT_EQ(all.bundles[i].views, 0b0111u);
+  }
 }
 
 TEST(BundleLod, NearestFirst) {

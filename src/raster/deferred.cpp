@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -30,7 +31,7 @@ constexpr std::size_t kGroupsPerTask = 8;
 /// What one thread works with; reused from task to task.
 struct Worker {
   StrandGroup group;
-  ScreenBlock block;
+  StrandBlock block;
   FragmentBuffer at_centers, touching;
   ScreenBlock runs;
   CoverageScratch coverage;
@@ -50,31 +51,6 @@ std::vector<GroupDraw> groups_of(const LodSelection& selection) {
       groups.push_back({static_cast<std::uint32_t>(b), s});
   return groups;
 }
-
-/// What raster reads of a bundle.
-class Strands {
- public:
-  Strands(const Scene& scene, std::span<const DeferredGroom> grooms, const LodSelection& selection, const CameraView& view)
-      : grooms_(grooms), selection_(selection) {
-    for (std::size_t g = 0; g < grooms.size(); ++g)
-      jobs_.push_back(make_strand_block_job(scene, view, grooms[g], g, grooms.size()));
-  }
-
-  /// Makes and assembles one group. Returns its segments.
-  std::size_t assemble(const GroupDraw& g, Worker& worker) const {
-    const BundleDraw& draw = selection_.bundles[g.bundle];
-    const BundleCage& cage = grooms_[draw.groom].mesh->cages[draw.bundle];
-    const std::size_t count = std::min<std::size_t>(StrandGroup::kLanes, draw.strands - g.first);
-    make_strands(cage, g.first, count, draw.points, worker.group);
-    assemble_group(worker.group, jobs_[draw.groom], draw.width_scale, worker.block);
-    return count * (draw.points - 1);
-  }
-
- private:
-  std::span<const DeferredGroom> grooms_;
-  const LodSelection& selection_;
-  std::vector<StrandBlockJob> jobs_;
-};
 
 /// The strands of `block` one after the other, as raster_coverage() takes them.
 void lay_out_runs(const ScreenBlock& block, ScreenBlock& runs) {
@@ -132,8 +108,8 @@ class CoverageLayer {
 };
 
 /// Keys before any strand: nothing, or the opaque scene.
-void clear(Buffer<PixelKey>& keys, std::size_t samples, const Buffer<float>& opaque, std::size_t opaque_samples,
-           const CameraView& picture, const DeferredBuffer& out) {
+void clear_keys(Buffer<PixelKey>& keys, std::size_t samples, const Buffer<float>& opaque, std::size_t opaque_samples,
+                const CameraView& picture, const DeferredBuffer& out) {
   const auto width = static_cast<std::size_t>(out.view.width), height = static_cast<std::size_t>(out.view.height);
   keys.resize(width * height * samples);
   const auto key_of = [&](float depth) {
@@ -157,19 +133,74 @@ void clear(Buffer<PixelKey>& keys, std::size_t samples, const Buffer<float>& opa
 }
 
 /// Makes pixels that no strand won empty again.
-void finish(Buffer<PixelKey>& keys) {
+void finish_keys(Buffer<PixelKey>& keys) {
   parallel_for(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (!deferred::is_strand(keys[i])) keys[i] = kEmptyPixel;
   });
 }
 
+/// The layers of one view while strands are drawn into them.
+class TargetLayers {
+ public:
+  /// Clears them.
+  TargetLayers(const Scene& scene, std::span<const DeferredGroom> grooms, const DeferredTarget& target,
+               const DeferredLayers& layers)
+      : target_(target), out_(target.out), layers_(layers),
+        locks_(std::max(1, out_.view.width), std::max(1, out_.view.height)) {
+    for (const DeferredGroom& groom : grooms) jobs_.push_back(make_project_job(out_.view, scene.grooms[groom.groom]));
+    out_.samples = std::max(1, layers.samples);
+    out_.center.release(), out_.conservative.release(), out_.sample_keys.release(), out_.coverage.release();
+    if (layers.center) clear(out_.center, 1);
+    if (layers.conservative) clear(out_.conservative, 1);
+    if (layers.samples > 0) clear(out_.sample_keys, static_cast<std::size_t>(out_.samples));
+    if (layers.coverage && !empty())
+      coverage_.emplace(out_, target.view, target.opaque_depth, static_cast<std::size_t>(out_.samples));
+  }
+
+  /// The strands of `w.group`, packed into `w.block`.
+  void draw(const BundleDraw& bundle, Worker& w) {
+    if (empty()) return;
+    const ScreenBlock& block = project_group(w.group, jobs_[bundle.groom], bundle.width_scale, w.block);
+    const int width = out_.view.width, height = out_.view.height;
+    if (layers_.center)
+      raster_deferred(block, out_.range, width, height, w.at_centers, w.touching, out_.center.data(),
+                      layers_.conservative ? out_.conservative.data() : nullptr);
+    if (layers_.samples > 0)
+      raster_deferred_samples(block, out_.range, width, height, layers_.samples, w.at_centers, locks_, out_.sample_keys.data());
+    if (coverage_) coverage_->draw(block, w);
+  }
+
+  /// Makes pixels that no strand won empty again.
+  void finish() {
+    if (!target_.opaque_depth.empty())
+      for (Buffer<PixelKey>* keys : {&out_.center, &out_.conservative, &out_.sample_keys}) finish_keys(*keys);
+    if (coverage_) out_.coverage = coverage_->finish();
+  }
+
+ private:
+  bool empty() const { return out_.view.width == 0 || out_.view.height == 0; }
+  void clear(Buffer<PixelKey>& keys, std::size_t samples) const {
+    clear_keys(keys, samples, target_.opaque_depth, static_cast<std::size_t>(out_.samples), target_.view, out_);
+  }
+
+  DeferredTarget target_;
+  DeferredBuffer& out_;
+  DeferredLayers layers_;
+  std::vector<ProjectJob> jobs_;  // by groom
+  TileLocks locks_;
+  std::optional<CoverageLayer> coverage_;
+};
+
 }  // namespace
 
 void place_deferred(const Scene& scene, std::span<const DeferredGroom> grooms, const LodSelection& selection,
-                    const CameraView& view, DeferredBuffer& out) {
+                    std::size_t number, const CameraView& view, DeferredBuffer& out) {
+  bool any = false;
   float nearest = INFINITY, farthest = 0, left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
   for (const BundleDraw& draw : selection.bundles) {
+    if (!(draw.views >> number & 1)) continue;
+    any = true;
     const Affine to_camera = compose(view.world_to_camera, scene.grooms[grooms[draw.groom].groom].transform);
     for (const Vec3 corner : corners(grooms[draw.groom].mesh->boxes[draw.bundle])) {
       const Vec3 p = transform_point(to_camera, corner);
@@ -183,7 +214,6 @@ void place_deferred(const Scene& scene, std::span<const DeferredGroom> grooms, c
   }
   constexpr float kMargin = 2;  // of widened strands; pixels
   const auto clamped = [](float x, int most) { return static_cast<int>(std::clamp(x, 0.f, static_cast<float>(most))); };
-  const bool any = !selection.bundles.empty();
   out.left = any ? clamped(std::floor(left - kMargin), view.width) : 0;
   out.top = any ? clamped(std::floor(top - kMargin), view.height) : 0;
   out.view = view;
@@ -195,45 +225,37 @@ void place_deferred(const Scene& scene, std::span<const DeferredGroom> grooms, c
 }
 
 std::uint64_t raster_hair_meshes(const Scene& scene, std::span<const DeferredGroom> grooms, const LodSelection& selection,
-                                 const CameraView& view, const DeferredLayers& layers, const Buffer<float>& opaque_depth,
-                                 DeferredBuffer& out, const Progress& progress) {
+                                 std::span<const DeferredTarget> targets, const DeferredLayers& layers,
+                                 const Progress& progress) {
   PELAGE_CHECK(layers.samples == 0 || layers.samples == 2 || layers.samples == 4 || layers.samples == 8);
   PELAGE_CHECK(layers.center || !layers.conservative);
-  const int width = out.view.width, height = out.view.height;
-  out.samples = std::max(1, layers.samples);
-  const auto samples = static_cast<std::size_t>(out.samples);
-  out.center.release(), out.conservative.release(), out.sample_keys.release(), out.coverage.release();
-  if (layers.center) clear(out.center, 1, opaque_depth, samples, view, out);
-  if (layers.conservative) clear(out.conservative, 1, opaque_depth, samples, view, out);
-  if (layers.samples > 0) clear(out.sample_keys, samples, opaque_depth, samples, view, out);
-  if (width == 0 || height == 0) return 0;
+  PELAGE_CHECK(!targets.empty() && targets.size() <= kMostViews);
+  std::vector<PayloadJob> payloads;
+  for (std::size_t g = 0; g < grooms.size(); ++g)
+    payloads.push_back({scene.grooms[grooms[g].groom].transform, uv_cells(g, grooms.size())});
+  std::deque<TargetLayers> views;
+  for (const DeferredTarget& target : targets) views.emplace_back(scene, grooms, target, layers);
 
   const std::vector<GroupDraw> groups = groups_of(selection);
-  const Strands strands(scene, grooms, selection, out.view);
-  TileLocks locks(width, height);
   tbb::enumerable_thread_specific<Worker> workers;
-  std::optional<CoverageLayer> coverage;
-  if (layers.coverage) coverage.emplace(out, view, opaque_depth, samples);
   std::atomic<std::uint64_t> segments{0};
   SharedProgress shared(progress, "raster", std::max<std::size_t>(1, groups.size()));
   parallel_for(groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
     Worker& w = workers.local();
-    std::uint64_t drawn = 0;
+    std::uint64_t made = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      drawn += strands.assemble(groups[i], w);
-      if (layers.center)
-        raster_deferred(w.block, out.range, width, height, w.at_centers, w.touching, out.center.data(),
-                        layers.conservative ? out.conservative.data() : nullptr);
-      if (layers.samples > 0)
-        raster_deferred_samples(w.block, out.range, width, height, layers.samples, w.at_centers, locks, out.sample_keys.data());
-      if (coverage) coverage->draw(w.block, w);
+      const BundleDraw& draw = selection.bundles[groups[i].bundle];
+      const std::size_t strands = std::min<std::size_t>(StrandGroup::kLanes, draw.strands - groups[i].first);
+      make_strands(grooms[draw.groom].mesh->cages[draw.bundle], groups[i].first, strands, draw.points, w.group);
+      pack_group(w.group, payloads[draw.groom], w.block);
+      for (std::size_t v = 0; v < views.size(); ++v)
+        if (draw.views >> v & 1) views[v].draw(draw, w);
+      made += strands * (draw.points - 1);
     }
-    segments.fetch_add(drawn, std::memory_order_relaxed);
+    segments.fetch_add(made, std::memory_order_relaxed);
     shared.add(end - begin);
   });
-  if (!opaque_depth.empty())
-    for (Buffer<PixelKey>* keys : {&out.center, &out.conservative, &out.sample_keys}) finish(*keys);
-  if (coverage) out.coverage = coverage->finish();
+  for (TargetLayers& view : views) view.finish();
   return segments;
 }
 

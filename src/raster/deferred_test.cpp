@@ -36,9 +36,10 @@ Drawn draw(const Scene& scene, int width, int height, const DeferredLayers& laye
   Drawn d;
   d.view = make_camera_view(scene.camera, width, height);
   const std::vector<DeferredGroom> grooms = deferred_grooms(scene);
-  d.selection = select_lod(scene, grooms, d.view);
-  place_deferred(scene, grooms, d.selection, d.view, d.buffer);
-  raster_hair_meshes(scene, grooms, d.selection, d.view, layers, opaque, d.buffer);
+  d.selection = select_lod(scene, grooms, std::span(&d.view, 1));
+  place_deferred(scene, grooms, d.selection, 0, d.view, d.buffer);
+  const DeferredTarget target{d.view, opaque, d.buffer};
+  raster_hair_meshes(scene, grooms, d.selection, std::span(&target, 1), layers);
   return d;
 }
 
@@ -160,13 +161,13 @@ PlainLayers plain_layers(const Scene& scene, const Drawn& d) {
   PlainLayers plain;
   plain.center.assign(d.buffer.center.size(), kEmptyPixel), plain.conservative = plain.center;
   StrandGroup group;
-  ScreenBlock block;
+  StrandBlock block;
   for (const BundleDraw& b : d.selection.bundles)
     for (std::uint32_t s = 0; s < b.strands; s += 16) {
       make_strands_scalar(grooms[b.groom].mesh->cages[b.bundle], s, std::min(16u, b.strands - s), b.points, group);
-      assemble_group(group, make_strand_block_job(scene, d.buffer.view, grooms[b.groom], b.groom, grooms.size()), b.width_scale,
-                     block);
-      draw_plainly(block, d.buffer, plain);
+      const GroomInstance& groom = scene.grooms[grooms[b.groom].groom];
+      pack_group(group, {groom.transform, uv_cells(b.groom, grooms.size())}, block);
+      draw_plainly(project_group(group, make_project_job(d.buffer.view, groom), b.width_scale, block), d.buffer, plain);
     }
   return plain;
 }
@@ -202,6 +203,59 @@ TEST(DeferredRaster, DrawsWhatAPlainWalkDrawsFromWithinTheHair) {
   EXPECT_GT(std::count_if(plain.center.begin(), plain.center.end(), deferred::is_strand), 5);
   EXPECT_TRUE(same(d.buffer.center, plain.center));
   EXPECT_TRUE(same(d.buffer.conservative, plain.conservative));
+}
+
+// Strands that are made once and seen from all around, from within the hair, in part, and not at all.
+TEST(DeferredRaster, EachOfManyViewsIsWhatItIsAlone) {
+  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator(), 2, 5, 40));
+  scene.grooms.push_back(scene.grooms[0]);
+  scene.grooms[1].transform.m[0][3] = 0.15f;
+  scene.settings.swr.points = 33;
+  std::vector<CameraView> pictures{make_camera_view(scene.camera, 200, 150)};
+  scene.camera.eye.x -= 0.4f;
+  pictures.push_back(make_camera_view(scene.camera, 97, 120));
+  Camera other = scene.camera;
+  other.eye = {0.02f, 0.08f, 0.02f}, other.target = {0.1f, 0.1f, 0}, other.near_plane = 0.01f;
+  pictures.push_back(make_camera_view(other, 61, 47));
+  other.eye = {0.25f, 0.1f, 0.5f}, other.target = {0.25f, 0.1f, 0}, other.fov_y = 0.4f;
+  pictures.push_back(make_camera_view(other, 50, 200));
+  other.target.z = 1;
+  pictures.push_back(make_camera_view(other, 30, 20));
+
+  const std::vector<DeferredGroom> grooms = deferred_grooms(scene);
+  const LodSelection selection = select_lod(scene, grooms, pictures);
+  std::vector<DeferredBuffer> together(pictures.size());
+  std::vector<DeferredTarget> targets;
+  const Buffer<float> nothing;
+  for (std::size_t v = 0; v < pictures.size(); ++v) {
+    place_deferred(scene, grooms, selection, v, pictures[v], together[v]);
+    targets.push_back({pictures[v], nothing, together[v]});
+  }
+  const DeferredLayers layers{.center = true, .conservative = true, .samples = 4, .coverage = true};
+  raster_hair_meshes(scene, grooms, selection, targets, layers);
+  for (std::size_t v = 0; v < pictures.size(); ++v) {
+    LodSelection own;
+    for (BundleDraw bundle : selection.bundles) {
+      if (!(bundle.views >> v & 1)) continue;
+      bundle.views = 1;
+      own.bundles.push_back(bundle), own.strands += bundle.strands, own.points += bundle.strands * bundle.points;
+    }
+    DeferredBuffer alone;
+    place_deferred(scene, grooms, own, 0, pictures[v], alone);
+    const DeferredTarget target{pictures[v], nothing, alone};
+    raster_hair_meshes(scene, grooms, own, std::span(&target, 1), layers);
+    const auto same = [](const auto& a, const auto& b) {
+      return a.size() == b.size() && (a.size() == 0 || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
+    };
+    EXPECT_EQ(together[v].range.near_end, alone.range.near_end) << v;
+    EXPECT_TRUE(same(together[v].center, alone.center)) << v;
+    EXPECT_TRUE(same(together[v].conservative, alone.conservative)) << v;
+    EXPECT_TRUE(same(together[v].sample_keys, alone.sample_keys)) << v;
+    EXPECT_TRUE(same(together[v].coverage, alone.coverage)) << v;
+    const auto strands = std::count_if(alone.center.begin(), alone.center.end(), deferred::is_strand);
+    if (v + 1 < pictures.size()) EXPECT_GT(strands, 50) << v;
+    else EXPECT_EQ(strands, 0);
+  }
 }
 
 TEST(DeferredRaster, SameBitsForAnyThreadsAndInstructionSet) {

@@ -38,8 +38,8 @@ class Fingerprint {
   }
   // Bindings name every field: a struct that gets another one no longer compiles here.
   void add_one(const Camera& camera) {
-    const auto& [projection, eye, target, up, fov_y, height, near_plane] = camera;
-    add(projection, eye, target, up, fov_y, height, near_plane);
+    const auto& [projection, eye, target, up, fov_y, height, near_plane, shift_x, shift_y, stereo] = camera;
+    add(projection, eye, target, up, fov_y, height, near_plane, shift_x, shift_y);  // one eye is traced
   }
   void add_one(const Light& light) {
     const auto& [type, name, position, direction, intensity, inner_angle, outer_angle, casts_shadow] = light;

@@ -39,9 +39,11 @@ struct Drawn {
 
   explicit Drawn(const Scene& scene, int size = 96) : grooms(deferred_grooms(scene)) {
     const CameraView view = make_camera_view(scene.camera, size, size);
-    selection = select_lod(scene, grooms, view);
-    place_deferred(scene, grooms, selection, view, buffer);
-    raster_hair_meshes(scene, grooms, selection, view, {}, {}, buffer);
+    selection = select_lod(scene, grooms, std::span(&view, 1));
+    place_deferred(scene, grooms, selection, 0, view, buffer);
+    const Buffer<float> nothing;
+    const DeferredTarget target{view, nothing, buffer};
+    raster_hair_meshes(scene, grooms, selection, std::span(&target, 1), {});
   }
 };
 

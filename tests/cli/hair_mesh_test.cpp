@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/cli_kit.h"
+#include "composite/side_by_side.h"
 
 namespace pelage {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::HasSubstr;
 using Json = nlohmann::json;
 
@@ -97,6 +99,55 @@ TEST_F(CliHairMesh, ASceneFileMakesItself) {
     const Image picture = read_image(in("grown.exr").string());
     EXPECT_GT(*std::max_element(picture.pixels.begin(), picture.pixels.end()), *picture.at(0, 0) + 0.05f) << method;
   }
+}
+
+TEST_F(CliHairMesh, TwoEyesSeeItSideBySideOrInFilesOfTheirOwn) {
+  make_bob();
+  const std::string common = "render bob.hairmesh --no-head --method swr --size 40x30 ";
+  const Outcome drawn = run(common + "--stereo -o both.png -o eye.%V.png -o layers.%V.exr --layers Z --stats");
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(drawn.out, HasSubstr("raster"));
+  EXPECT_EQ(files().size(), 6u);  // and the hair mesh
+  const Image both = read_image(in("both.png").string());
+  EXPECT_EQ(both.width, 80);
+  for (const int eye : {0, 1}) {
+    const std::string name = eye == 0 ? "left" : "right";
+    const Image one = read_image(in("eye." + name + ".png").string());
+    EXPECT_EQ(one.pixels, part_of(both, eye, 2).pixels);
+    const Image layers = read_image(in("layers." + name + ".exr").string());
+    EXPECT_EQ(layers.width, 40);
+    EXPECT_THAT(layers.channels, Contains("Z"));
+  }
+  EXPECT_NE(slurp(in("eye.left.png")), slurp(in("eye.right.png")));
+
+  const auto picture = [&](const std::string& options) {
+    EXPECT_EQ(run(common + "-o one.png " + options).status, 0) << options;
+    return slurp(in("one.png"));
+  };
+  EXPECT_EQ(picture("--stereo=0.063"), slurp(in("both.png")));
+  EXPECT_NE(picture("--stereo=0.1"), slurp(in("both.png")));
+  EXPECT_NE(picture("--stereo --convergence 0.5"), slurp(in("both.png")));
+  EXPECT_EQ(picture("--stereo=0"), picture(""));
+  // The usual way to name a picture of either eye goes along with the number of a picture.
+  ASSERT_EQ(run(common + "--stereo -o turn.%V.##.png --orbit 5 --frames 2").status, 0);
+  EXPECT_TRUE(fs::exists(in("turn.right.02.png")));
+}
+
+TEST_F(CliHairMesh, MistakesAboutEyesAreNamed) {
+  make_bob();
+  const auto error = [&](const std::string& options) {
+    const Outcome outcome = run("render bob.hairmesh --no-head --method swr --size 16x16 " + options);
+    EXPECT_NE(outcome.status, 0) << options;
+    return outcome.err;
+  };
+  EXPECT_THAT(error("--stereo=-1 -o a.png"), HasSubstr("separation"));
+  EXPECT_THAT(error("--stereo=wide -o a.png"), HasSubstr("--stereo"));
+  EXPECT_THAT(error("--stereo --convergence 0 -o a.png"), HasSubstr("--convergence"));
+  EXPECT_THAT(error("--convergence 1 -o a.png"), HasSubstr("--stereo"));
+  EXPECT_THAT(error("-o eye.%V.png"), HasSubstr("--stereo"));
+  EXPECT_THAT(error("--stereo --ortho -o a.png"), HasSubstr("orthographic"));
+  EXPECT_THAT(error("--stereo --gbuffer g.exr"), HasSubstr("two eyes"));
+  EXPECT_FALSE(fs::exists(in("a.png")));
 }
 
 TEST_F(CliHairMesh, MistakesAreNamed) {
