@@ -233,7 +233,9 @@ std::string check_selection(const Input& in) {
         high[0] = std::fmax(high[0], at.x), high[1] = std::fmax(high[1], at.y);
       }
     const double size = std::hypot(high[0] - low[0], high[1] - low[1]) / view.height * in.scene.grooms[0].lod_lambda;
-    const double wanted = std::fmin(size, 1) * (bundle.strands + static_cast<double>(prepared.stagger[draw.bundle]));
+    const double widest = static_cast<double>(kernel::kLodWidestStrand * prepared.across[draw.bundle]);
+    const double wanted = std::fmax(std::fmin(size, 1) * (bundle.strands + static_cast<double>(prepared.stagger[draw.bundle])),
+                                    bundle.strands * static_cast<double>(prepared.mesh->width) / widest);
     if (std::fabs(std::fmin(wanted, bundle.strands) - draw.strands) > 1.01)
       return "a bundle of " + std::to_string(bundle.strands) + " has " + std::to_string(draw.strands) + " strands, not " +
              std::to_string(wanted);
@@ -328,6 +330,44 @@ Workload look_workload(const Shot& shot, bool radiance) {
           }};
 }
 
+/// PSNR between neighboring frames of a dolly, with the filter, at full detail and with level of detail.
+struct Dolly {
+  std::vector<double> psnr[2];
+};
+
+const Dolly& dolly_of(HairMeshStyle style) {
+  constexpr int kFrames = 60;
+  constexpr float kFrom = 600, kTo = 60;  // pixels of height
+  static std::map<HairMeshStyle, Dolly> kept;
+  Dolly& dolly = kept[style];
+  if (!dolly.psnr[0].empty()) return dolly;
+  const Input in({"dolly", style, kFrom});
+  Picture before[2];
+  for (int i = 0; i < kFrames; ++i) {
+    const Scene there = scene_of({"dolly", style, kFrom * std::pow(kTo / kFrom, static_cast<float>(i) / (kFrames - 1))});
+    const CameraView view = make_camera_view(there.camera, there.settings.width, there.settings.height);
+    for (const bool lod : {false, true}) {
+      const RenderSettings s = settings_of(in, kKinds[1], lod);
+      Picture frame = over_background({picture_of(in.hair(s, nullptr, {0.5f, 0.5f}, &view), s)}, s.background);
+      if (i > 0) dolly.psnr[lod].push_back(compare_images(frame, before[lod], {.metrics = {"psnr"}}).value("psnr").value());
+      before[lod] = std::move(frame);
+    }
+  }
+  return dolly;
+}
+
+/// Means over its frames, and the least that level of detail has over full detail: below 0 something pops.
+double dolly_value(const Dolly& dolly, const std::string& metric) {
+  const auto mean = [](const std::vector<double>& v) {
+    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+  };
+  if (metric == "psnr_full") return mean(dolly.psnr[0]);
+  if (metric == "psnr_lod") return mean(dolly.psnr[1]);
+  double least = INFINITY;
+  for (std::size_t i = 0; i < dolly.psnr[0].size(); ++i) least = std::min(least, dolly.psnr[1][i] - dolly.psnr[0][i]);
+  return least;
+}
+
 using MakeStrands = void (*)(const BundleCage&, std::uint32_t, std::size_t, std::uint32_t, StrandGroup&);
 
 /// All strands of the mesh at full detail, made and forgotten.
@@ -392,6 +432,14 @@ void add_swr_cases(Suite& suite) {
     suite.ratios.push_back({at + "stereo_over_single.lod", {at + "stereo.lod"}, {at + "filter.lod"}});
     suite.ratios.push_back({at + "prepass_share", {at + "prepass"}, {at + "filter.lod"}});
   }
+  for (const std::string style : {"long-wavy", "curls"})
+    for (const std::string metric : {"psnr_full", "psnr_lod", "least_gain"})
+      suite.cases.push_back(
+          {"swr.dolly." + style, metric, "dB", [style, metric] {
+             return Workload{
+                 .check = [] { return std::string(); },
+                 .measure = [style, metric] { return dolly_value(dolly_of(hair_mesh_style_from_name(style)), metric); }};
+           }});
   for (const std::string& style : hair_mesh_style_names())
     for (const int pixels : kLookHeights) {
       const Shot shot{"look", hair_mesh_style_from_name(style), static_cast<float>(pixels)};

@@ -66,9 +66,13 @@ BundleDraw choose(const GroomInstance& groom, const PreparedHairMesh& prepared, 
   const float selection =
       whole ? 1.f : kernel::lod_selection(cage.min, cage.max, static_cast<float>(view.height), groom.lod_lambda);
   const auto all = static_cast<float>(b.strands);
-  draw.strands = static_cast<std::uint32_t>(kernel::lod_strands(selection, all, whole ? 0.f : prepared.stagger[bundle]));
-  draw.points = static_cast<std::uint32_t>(
-      kernel::lod_points(selection, std::max(most, static_cast<float>(mesh.layers(b))), static_cast<float>(mesh.layers(b))));
+  const float fewest =
+      settings.thicken ? kernel::lod_least_strands(all, mesh.width * groom.width_scale, prepared.across[bundle]) : 1.f;
+  draw.strands =
+      static_cast<std::uint32_t>(std::max(kernel::lod_strands(selection, all, whole ? 0.f : prepared.stagger[bundle]), fewest));
+  const float least =
+      std::max(static_cast<float>(mesh.layers(b)), std::min(most, prepared.turns[bundle] * kernel::kStylePointsPerTurn));
+  draw.points = static_cast<std::uint32_t>(kernel::lod_points(selection, std::max(most, least), least));
   if (settings.thicken) draw.width_scale = all / static_cast<float>(draw.strands);
   return draw;
 }

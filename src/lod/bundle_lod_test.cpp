@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "frame/camera_view.h"
+#include "groom/hairmesh/prepared.h"
 #include "kernel/scalar.h"
 #include "kit/hair_mesh_scene.h"
 
@@ -35,6 +36,34 @@ TEST(BundleLod, FollowsItsEquations) {
   EXPECT_EQ(kernel::lod_points(0, 127, 2), 3);
   EXPECT_FLOAT_EQ(kernel::lod_depth_shift(1), 0);
   EXPECT_NEAR(kernel::lod_depth_shift(0.25f), std::log(4.f), 1e-6f);
+}
+
+// Thickened strands grow to a share of their bundle's width and no farther; the published ones are left out all the same.
+TEST(BundleLod, StrandsStayThinBesideTheirBundle) {
+  EXPECT_EQ(kernel::lod_least_strands(1000, 1e-4f, 0.1f), std::ceil(1000 * 1e-4f / (0.1f * kernel::kLodWidestStrand)));
+  EXPECT_EQ(kernel::lod_least_strands(10, 1e-4f, 1), 1);
+  EXPECT_EQ(kernel::lod_least_strands(100, 0.1f, 0.1f), 100);
+  const auto mesh = small_hair_mesh(every_operator(), 2, 5, 4000);
+  const PreparedHairMesh prepared(std::make_shared<const HairMesh>(mesh));
+  Scene scene = hair_mesh_scene(mesh);
+  scene.camera.eye = {0, 0.1f, 100};
+  for (const BundleDraw& b : select(scene).bundles) {
+    const float widest = kernel::kLodWidestStrand * prepared.across[b.bundle];
+    EXPECT_LE(mesh.width * b.width_scale, widest * 1.0001f);
+    EXPECT_GT(mesh.width * 4000 / static_cast<float>(b.strands - 1), widest);  // one strand less is too few
+  }
+  scene.settings.swr.thicken = false;
+  for (const BundleDraw& b : select(scene).bundles) EXPECT_LE(b.strands, 20u);
+}
+
+// Waves are not drawn from fewer than four points a turn, as far as there are any.
+TEST(BundleLod, AWaveKeepsItsPoints) {
+  Scene scene = hair_mesh_scene(small_hair_mesh({{StyleOperator::Kind::kCurl, 0.01f, 12, 0, 0}}));
+  scene.camera.eye = {0, 0.1f, 30};
+  for (const BundleDraw& b : select(scene).bundles) EXPECT_EQ(b.points, 65u);  // 48 → 2⁶ + 1
+  scene = hair_mesh_scene(small_hair_mesh({{StyleOperator::Kind::kCurl, 0.01f, 100, 0, 0}}));
+  scene.camera.eye = {0, 0.1f, 30};
+  for (const BundleDraw& b : select(scene).bundles) EXPECT_EQ(b.points, 127u);
 }
 
 TEST(BundleLod, WholeWithoutIt) {

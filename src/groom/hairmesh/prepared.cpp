@@ -1,10 +1,36 @@
 #include "groom/hairmesh/prepared.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/rng.h"
+#include "kernel/scalar.h"
 
 namespace pelage {
+namespace {
+
+/// Of the quads of all layers: the side of a square of their area.
+float width_across(const HairMesh& mesh, const HairMesh::Bundle& bundle) {
+  const std::uint32_t layers = mesh.layers(bundle);
+  float sum = 0;
+  for (std::uint32_t i = 0; i < layers; ++i) {
+    const auto corner = [&](std::size_t c) { return mesh.positions[mesh.column_offsets[bundle.columns[c]] + i]; };
+    sum += std::sqrt(0.5f * length(cross(corner(2) - corner(0), corner(3) - corner(1))));
+  }
+  return sum / static_cast<float>(layers);
+}
+
+float fastest_turns(const std::vector<StyleOperator>& style) {
+  using Kind = StyleOperator::Kind;
+  float turns = 0;
+  for (const StyleOperator& o : style)
+    if (o.amount > 0 && (o.kind == Kind::kWave || o.kind == Kind::kCurl || o.kind == Kind::kFrizz || o.kind == Kind::kNoise))
+      turns = std::max(turns, o.frequency * (o.kind == Kind::kNoise ? kernel::kStyleNoiseTurns : 1.f));
+  return turns;
+}
+
+}  // namespace
 
 PreparedHairMesh::PreparedHairMesh(std::shared_ptr<const HairMesh> hair_mesh) : mesh(std::move(hair_mesh)) {
   constexpr std::uint64_t kStagger = 0x6c6f64;
@@ -12,6 +38,8 @@ PreparedHairMesh::PreparedHairMesh(std::shared_ptr<const HairMesh> hair_mesh) : 
     cages.emplace_back(*mesh, bundle);
     boxes.push_back(bounds(*mesh, bundle));
     stagger.push_back(Rng(kStagger, bundle.seed).uniform());
+    across.push_back(width_across(*mesh, bundle));
+    turns.push_back(fastest_turns(mesh->styles[bundle.style]));
   }
 }
 

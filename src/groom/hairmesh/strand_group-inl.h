@@ -99,23 +99,38 @@ PELAGE_LANES_FN Vec2 strand_across_at(const StrandStyle& style, const StrandTrai
   return uv;
 }
 
+// How much farther waves swing for what chords between points cut off, by operator.
+struct ChordGains {
+  Float wave, curl, noise, frizz;
+};
+
+// step: of w, from point to point.
+PELAGE_LANES_FN ChordGains chord_gains(const StrandStyle& style, Float step) {
+  const auto gain = [&](const StyleOperator* o, float turns) {
+    return o ? style_chord_gain(step * Float(o->frequency * turns)) : Float(1.0f);
+  };
+  return {gain(style.wave, 1), gain(style.curl, 1), gain(style.noise, kStyleNoiseTurns), gain(style.frizz, 1)};
+}
+
 // Shift off the base strand, along its normal and its binormal, metres.
-PELAGE_LANES_FN Vec2 strand_shift(const StrandStyle& style, const StrandTraits& t, std::size_t l, Float w) {
+PELAGE_LANES_FN Vec2 strand_shift(const StrandStyle& style, const StrandTraits& t, const ChordGains& gains, std::size_t l,
+                                  Float w) {
   Vec2 shift(Float(0.0f), Float(0.0f));
   if (const StyleOperator* o = style.wave) {
-    const Float swing = style_onset(w, Float(o->start)) * style_wave(w, Float(o->frequency), load(&t.wave_phase[l]));
+    const Float swing =
+        gains.wave * style_onset(w, Float(o->start)) * style_wave(w, Float(o->frequency), load(&t.wave_phase[l]));
     shift = shift + Vec2(load(&t.wave_x[l]), load(&t.wave_y[l])) * swing;
   }
   if (const StyleOperator* o = style.curl)
-    shift = shift +
-            style_curl(w, Float(o->frequency), load(&t.curl_phase[l])) * (Float(o->amount) * style_onset(w, Float(o->start)));
+    shift = shift + style_curl(w, Float(o->frequency), load(&t.curl_phase[l])) *
+                        (gains.curl * Float(o->amount) * style_onset(w, Float(o->start)));
   if (const StyleOperator* o = style.noise)
     shift =
         shift + style_noise(Vec3(load(&t.groom_u[l]), load(&t.groom_v[l]), w), Float(o->frequency), load(&t.noise_phase[l])) *
-                    (Float(o->amount) * style_onset(w, Float(o->start)));
+                    (gains.noise * Float(o->amount) * style_onset(w, Float(o->start)));
   if (const StyleOperator* o = style.frizz)
     shift = shift + style_frizz(w, Float(o->frequency), Vec3(load(&t.frizz_a[l]), load(&t.frizz_b[l]), load(&t.frizz_c[l]))) *
-                        (load(&t.frizz[l]) * style_onset(w, Float(o->start)));
+                        (gains.frizz * load(&t.frizz[l]) * style_onset(w, Float(o->start)));
   return shift;
 }
 
@@ -125,6 +140,7 @@ PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& st
   const float spans = static_cast<float>(cage.spans), last = spans - 1;
   const auto span_at = [&](float w) { return std::min(std::floor(w * spans), last); };
   const Float length = load(&traits.length[l]), root_width(cage.mesh->width);
+  const ChordGains gains = chord_gains(style, length * Float(1.0f / static_cast<float>(g.points - 1)));
   Float weight[4];
   strand_weights(load(&traits.u[l]), load(&traits.v[l]), weight);
   StrandCubic cubic;
@@ -146,7 +162,7 @@ PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& st
       const Vec3 along = v_normalize(curve_cubic_derivative(cubic.c[1], cubic.c[2], cubic.c[3], min(at.t, Float(1.0f))));
       const Vec3 side = strand_normal(cage, at);
       const Vec3 normal = v_normalize(side - along * dot(side, along)), binormal = cross(along, normal);
-      const Vec2 shift = strand_shift(style, traits, l, w);
+      const Vec2 shift = strand_shift(style, traits, gains, l, w);
       p = p + normal * shift.x + binormal * shift.y;
     }
     Float width = root_width;

@@ -38,6 +38,7 @@ struct Oracle {
   const HairMesh::Bundle& bundle;
   const StrandTraits& traits;
   std::size_t lane;
+  int points;
 
   static constexpr double kTurn = 2 * 3.14159265358979323846;
   int spans() const { return static_cast<int>(mesh.layers(bundle)) - 1; }
@@ -96,26 +97,33 @@ struct Oracle {
     return base + normal * shift(w).x + binormal * shift(w).y;
   }
 
+  // What chords between `points` points of a wave cut off of it: sinc² of the turns from one to the next, at most a quarter.
+  double gain(double frequency) const {
+    const double half = kTurn / 2 * std::fmin(std::fmax(frequency * traits.length[lane] / (points - 1), 1e-3), 0.25);
+    return half * half / (std::sin(half) * std::sin(half));
+  }
+
   D3 shift(double w) const {
     double x = 0, y = 0;
     if (const StyleOperator* o = find(Kind::kWave)) {
-      const double swing = onset(w, *o) * std::sin(kTurn * (w * o->frequency + traits.wave_phase[lane]));
+      const double swing = gain(o->frequency) * onset(w, *o) * std::sin(kTurn * (w * o->frequency + traits.wave_phase[lane]));
       x += traits.wave_x[lane] * swing, y += traits.wave_y[lane] * swing;
     }
     if (const StyleOperator* o = find(Kind::kCurl)) {
       const double angle = kTurn * (w * o->frequency + traits.curl_phase[lane]);
-      x += o->amount * onset(w, *o) * std::cos(angle), y += o->amount * onset(w, *o) * std::sin(angle);
+      const double size = gain(o->frequency) * o->amount * onset(w, *o);
+      x += size * std::cos(angle), y += size * std::sin(angle);
     }
     if (const StyleOperator* o = find(Kind::kNoise)) {
       const double u = traits.groom_u[lane], v = traits.groom_v[lane], phase = traits.noise_phase[lane];
       const double a = kTurn * (o->frequency * (0.82 * u + 0.39 * v + 0.42 * w) + phase);
       const double b = kTurn * (o->frequency * (-0.53 * u + 0.71 * v + 0.61 * w) + phase + 0.37);
       const double c = kTurn * (o->frequency * (0.31 * u - 0.88 * v + 0.97 * w) + phase + 0.71);
-      const double size = o->amount * onset(w, *o) / 3;
+      const double size = gain(0.7 * o->frequency) * o->amount * onset(w, *o) / 3;
       x += size * (std::sin(a) + std::sin(b) + std::sin(c)), y += size * (std::cos(a) + std::cos(b) + std::cos(c));
     }
     if (const StyleOperator* o = find(Kind::kFrizz)) {
-      const double turns = w * o->frequency, size = traits.frizz[lane] * onset(w, *o);
+      const double turns = w * o->frequency, size = gain(o->frequency) * traits.frizz[lane] * onset(w, *o);
       const double a = kTurn * (turns + traits.frizz_a[lane]), b = kTurn * (1.71 * turns + traits.frizz_b[lane]);
       const double c = kTurn * (0.59 * turns + traits.frizz_c[lane]);
       x += size * (0.4 * std::sin(a) + 0.3 * std::sin(b)), y += size * (0.4 * std::cos(c) + 0.3 * std::cos(b));
@@ -148,7 +156,7 @@ void expect_like_oracle(const std::vector<StyleOperator>& style) {
       StrandTraits traits;
       make_traits(cage, 16, 7, traits);
       for (std::size_t l = 0; l < group.strands; ++l) {
-        const Oracle oracle{mesh, bundle, traits, l};
+        const Oracle oracle{mesh, bundle, traits, l, static_cast<int>(points)};
         for (std::size_t i = 0; i < points; ++i)
           ASSERT_LT(distance(oracle.point(static_cast<double>(i) / (points - 1)), point_of(group, i, l)), kTolerance)
               << "strand " << l << " point " << i << " of " << points;
