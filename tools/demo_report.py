@@ -134,7 +134,8 @@ class Workshop:
         return stamp if stamp["stamp"] == self.stamp(arguments, inputs) and (self.folder / output).exists() else None
 
     def make(self, arguments, inputs, output, json_output=False):
-        """Runs `pelage ARGUMENTS -o OUTPUT` in the folder, and returns the stamp, whose `seconds` are those of the work."""
+        """Runs `pelage ARGUMENTS -o OUTPUT` in the folder, and returns the stamp: `seconds` of the work, and `told`, with json_output, what
+        it printed."""
         stamp = self.known(arguments, inputs, output)
         if stamp:
             return stamp
@@ -144,10 +145,8 @@ class Workshop:
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
         if done.returncode != 0:
             raise Failure(done.stderr.strip().splitlines()[0] if done.stderr.strip() else f"exit status {done.returncode}")
-        seconds = time.monotonic() - start
-        if json_output:
-            seconds = self.work_seconds(json.loads(done.stdout), seconds)
-        stamp = {"stamp": self.stamp(arguments, inputs), "seconds": round(seconds, 4)}
+        seconds, told = time.monotonic() - start, json.loads(done.stdout) if json_output else {}
+        stamp = {"stamp": self.stamp(arguments, inputs), "seconds": round(self.work_seconds(told, seconds), 4), "told": told}
         (self.folder / f"{output}.stamp").write_text(json.dumps(stamp))
         return stamp
 

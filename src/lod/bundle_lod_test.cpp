@@ -53,7 +53,9 @@ TEST(BundleLod, StrandsStayThinBesideTheirBundle) {
     EXPECT_GT(mesh.width * 4000 / static_cast<float>(b.strands - 1), widest);  // one strand less is too few
   }
   scene.settings.swr.thicken = false;
-  for (const BundleDraw& b : select(scene).bundles) EXPECT_LE(b.strands, 20u);
+  for (const BundleDraw& b : select(scene).bundles)
+    EXPECT_GT(mesh.width * b.width_scale * 4000 / static_cast<float>(b.strands),
+              kernel::kLodWidestStrand * prepared.across[b.bundle]);
 }
 
 // Waves are not drawn from fewer than four points a turn, as far as there are any.
