@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Breaks a kernel header, one small change at a time, and reports which changes its tests did not notice.
 
-  tools/mutate.py src/kernel/math/elementary.h [--tests REGEX] [--library] [--minutes 10] [--seed 1]
+  tools/mutate.py src/kernel/math/elementary.h [--tests REGEX] [--library | --also SOURCE …] [--minutes 10] [--seed 1]
 
 Works in a copy of the tree (build/mutate), so the checkout is never touched. Each mutant swaps an operator, a comparison,
 a function or moves a constant by 1 %, rebuilds the tests that --tests names (by default those of the header's topic) and runs
 them. Only the tests themselves are compiled again, which suits those that call the kernel directly; with --library what
-they link is too, for formulas that they reach through a stage. A surviving mutant is a change that no test noticed; each
+they link is too, for formulas that they reach through a stage, and with --also the named sources of it, for one instruction
+set, which is much faster. A surviving mutant is a change that no test noticed; each
 is printed. Exit 1 where there is one.
 """
 import argparse
@@ -23,7 +24,7 @@ COPY = os.path.join(ROOT, "build", "mutate", "tree")
 
 # Tests that state what a topic's formulas have to give, by ctest name. Parity is of no use: it breaks all targets alike.
 TESTS = {"math": "kernel_math", "curve": "kernel_curve", "scatter": "scatter", "raster": "raster", "light": "light", "shade": "shade",
-         "composite": "tonemap"}
+         "composite": "tonemap", "lod": "bundle_lod", "style": "hairmesh_strands"}
 
 SWAPS = [
     (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " + "), (r" / ", " * "),
@@ -78,10 +79,14 @@ def prepare(tests):
     return names
 
 
-def commands_of(names):
-    """The compile and link commands of the tests themselves, as ninja would run them."""
+def commands_of(names, sources):
+    """The compile and link commands of the tests themselves, as ninja would run them, after those of `sources` of the library."""
     build = os.path.join(COPY, "build", "release")
     commands = []
+    for source in sources:
+        made = f"CMakeFiles/pelage.dir/{source}.o"
+        listed = run(["ninja", "-C", build, "-t", "commands", made]).stdout.strip().split("\n")
+        commands += [listed[-1].replace(" -c ", " -DHWY_COMPILE_ONLY_STATIC -c "), f"ar r libpelage.a {made}"]
     for name in names:
         listed = run(["ninja", "-C", build, "-t", "commands", name + "_test"]).stdout.strip().split("\n")
         commands += [c for c in listed if f"/{name}_test.dir/" in c and " -c " in c] + [listed[-1]]
@@ -100,6 +105,7 @@ def main():
     parser.add_argument("header", help="below src/kernel/")
     parser.add_argument("--tests", help="regular expression of ctest names")
     parser.add_argument("--library", action="store_true", help="rebuild what the tests link, too")
+    parser.add_argument("--also", nargs="*", default=[], metavar="SOURCE", help="sources of the library to rebuild")
     parser.add_argument("--minutes", type=float, default=10)
     parser.add_argument("--seed", type=int, default=1, help="order of the mutants, where time does not suffice for all")
     options = parser.parse_args()
@@ -110,7 +116,7 @@ def main():
     regex = "^(" + "|".join(names) + ")$"
     if not survives(names, regex, None):
         sys.exit("the tests fail without any change")
-    own_commands = None if options.library else commands_of(names)
+    own_commands = None if options.library else commands_of(names, options.also)
 
     path = os.path.join(COPY, header)
     with open(path, encoding="utf-8") as f:
