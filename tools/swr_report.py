@@ -114,7 +114,7 @@ def bench(shop, regex):
 def table1(shop, report, options):
     found = {}
     if options.quick:
-        found.update(bench(shop, r"^swr\.far\.((center|filter)\.(full|lod)|strands|prepass|lod_gain)$"))
+        found.update(bench(shop, r"^swr\.far\.(filter\.lod|strands|prepass)$"))
     else:
         for prefix in GROOMS.values():
             for distance in DISTANCES:
