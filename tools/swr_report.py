@@ -302,7 +302,7 @@ FIGURE1 = (  # style, strands, λ, where its head stands (metres), by how much i
     ("long-wavy", 127000, 5.5, (-0.22, 0.0, 0.16), -14, {"eumelanin": 0.3, "pheomelanin": 0.2}),
     ("curls", 127000, 2, (0.20, 0.0, -0.40), 12, {"eumelanin": 0.25, "pheomelanin": 1.4}),
     ("afro", 80000, 2.8, (0.62, 0.0, -1.00), -20, {"eumelanin": 5, "pheomelanin": 0}),
-    ("ponytail", 59000, 3, (1.20, 0.0, -1.90), -75, {"eumelanin": 0.12, "pheomelanin": 0.1}))
+    ("ponytail", 59000, 3, (1.30, 0.0, -1.90), -75, {"eumelanin": 0.12, "pheomelanin": 0.1}))
 
 
 def figure1(shop, report, options):
@@ -316,7 +316,7 @@ def figure1(shop, report, options):
         grooms.append({"name": style, "file": f"../{file}", "lod_lambda": density, "transform": transform, "material": color})
         heads.append({"name": f"{style} head", "shape": "mannequin", "transform": transform, "color": [0.45, 0.31, 0.25], "roughness": 0.45})
         files.append(file)
-    scene = {"camera": {"eye": eye, "target": [0.07, -0.15, -0.6], "fov": 20.5},
+    scene = {"camera": {"eye": eye, "target": [0.04, -0.15, -0.6], "fov": 20.5},
              "lights": [{**light, "intensity": [0.55 * x for x in light["intensity"]]} for light in LIGHTS],
              "environment": {"map": f"../{ENVIRONMENT}", "radiance": [0.5, 0.5, 0.5], "rotation": 60}, "meshes": heads, "grooms": grooms,
              "settings": {"width": size[0], "height": size[1], "method": "swr", "environment_lighting": "probe", "opacity_map_size": 64 if options.quick else 1024, "exposure": 0.6,
@@ -346,19 +346,19 @@ def figure4(shop, report, options):
     for name, swr in variants.items():
         scene, groom = before(shop, "long-wavy", options.strands, 200, options.size)
         scene["grooms"][0]["lod_lambda"] = 1
-        scene["settings"].update({"transparent_background": True, "swr": {**swr, "filter": False}})
-        linear = shoot(shop, f"figure4-{name.replace(' ', '-').replace('.', '')}", scene, groom, "--float", suffix=".exr")
+        hair = {**scene, "meshes": [], "settings": {**scene["settings"], "transparent_background": True, "swr": {**swr, "filter": False}}}
+        linear = shoot(shop, f"figure4-{name.replace(' ', '-').replace('.', '')}", hair, groom, "--float", suffix=".exr")
         first = first or linear
         done = subprocess.run([shop.pelage, "compare", linear, first, "--mask", "hair", "--metrics", "energy", "--json"], cwd=shop.folder,
                               check=True, capture_output=True, text=True)
         told.append(f"{name} {json.loads(done.stdout)['energy']:.3f}")
-        scene["settings"].update({"transparent_background": False, "swr": swr})
+        scene["settings"]["swr"] = swr
         picture = shoot(shop, f"figure4-{name.replace(' ', '-').replace('.', '')}", scene, groom)
-        tiles.append(cropped(shop, picture, (0.5, 0.5), options.tile // 2, 2))
+        tiles.append(cropped(shop, picture, (0.5, 0.5), options.tile // 3, 3))
     report.text("Figure 4: shadows where strands are left out", heading=True)
     save(shop, report, "figure4.png", [tiles], f"Long waves, 200 pixels tall, λ 1, maps of light of all strands: {', '.join(variants)}. Naive: fewer "
          "strands are seen too deep in the hair, where the maps hold little light. Thickened, the default here, they hide what is behind as all did. "
-         f"Light on the hair over that of full detail, without filter: {', '.join(told)}.")
+         f"Light of the hair alone over that of full detail, without filter: {', '.join(told)}.")
 
 
 def figure5(shop, report, options):
@@ -376,7 +376,7 @@ def figure5(shop, report, options):
          "16 samples hits hair, all that the conservative layer can tell.")
 
 
-FIGURE5 = ((0.33, 0.30), (0.645, 0.62))  # places, shares of the picture
+FIGURE5 = ((0.406, 0.215), (0.604, 0.745))  # places, shares of the picture
 
 
 def figure6(shop, report, options):
