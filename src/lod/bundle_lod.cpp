@@ -13,6 +13,9 @@
 namespace pelage {
 namespace {
 
+/// Least points of a turn of a bundle's fastest wave, and of a span between layers: fewer cut off so much that hair looks darker.
+constexpr float kPointsPerTurn = 6, kPointsPerSpan = 2;
+
 /// A box on the screen, pixels.
 struct ScreenBox {
   Vec2 min{INFINITY, INFINITY}, max{-INFINITY, -INFINITY};
@@ -70,8 +73,9 @@ BundleDraw choose(const GroomInstance& groom, const PreparedHairMesh& prepared, 
       settings.thicken ? kernel::lod_least_strands(all, mesh.width * groom.width_scale, prepared.across[bundle]) : 1.f;
   draw.strands =
       static_cast<std::uint32_t>(std::max(kernel::lod_strands(selection, all, whole ? 0.f : prepared.stagger[bundle]), fewest));
+  const float spans = static_cast<float>(mesh.layers(b) - 1);
   const float least =
-      std::max(static_cast<float>(mesh.layers(b)), std::min(most, prepared.turns[bundle] * kernel::kStylePointsPerTurn));
+      std::max(spans + 1, std::min(most, std::max(kPointsPerSpan * spans + 1, kPointsPerTurn * prepared.turns[bundle])));
   draw.points = static_cast<std::uint32_t>(kernel::lod_points(selection, std::max(most, least), least));
   if (settings.thicken) draw.width_scale = all / static_cast<float>(draw.strands);
   return draw;

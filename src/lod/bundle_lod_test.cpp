@@ -58,14 +58,17 @@ TEST(BundleLod, StrandsStayThinBesideTheirBundle) {
               kernel::kLodWidestStrand * prepared.across[b.bundle]);
 }
 
-// Waves are not drawn from fewer than four points a turn, as far as there are any.
+// Waves are not drawn from fewer than six points a turn, as far as there are any, nor spans from one chord.
 TEST(BundleLod, AWaveKeepsItsPoints) {
-  Scene scene = hair_mesh_scene(small_hair_mesh({{StyleOperator::Kind::kCurl, 0.01f, 12, 0, 0}}));
+  Scene scene = hair_mesh_scene(small_hair_mesh({{StyleOperator::Kind::kCurl, 0.01f, 8, 0, 0}}));
   scene.camera.eye = {0, 0.1f, 30};
   for (const BundleDraw& b : select(scene).bundles) EXPECT_EQ(b.points, 65u);  // 48 → 2⁶ + 1
   scene = hair_mesh_scene(small_hair_mesh({{StyleOperator::Kind::kCurl, 0.01f, 100, 0, 0}}));
   scene.camera.eye = {0, 0.1f, 30};
   for (const BundleDraw& b : select(scene).bundles) EXPECT_EQ(b.points, 127u);
+  scene = hair_mesh_scene(small_hair_mesh({}, 2, 14));
+  scene.camera.eye = {0, 0.1f, 30};
+  for (const BundleDraw& b : select(scene).bundles) EXPECT_EQ(b.points, 33u);  // 27 → 2⁵ + 1
 }
 
 TEST(BundleLod, WholeWithoutIt) {

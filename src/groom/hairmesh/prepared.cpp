@@ -21,12 +21,22 @@ float width_across(const HairMesh& mesh, const HairMesh::Bundle& bundle) {
   return sum / static_cast<float>(layers);
 }
 
+/// Waves that a turn of an operator's frequency is made of, along the strand; 0 where it makes none.
+float waves_of(StyleOperator::Kind kind) {
+  switch (kind) {
+    case StyleOperator::Kind::kWave:
+    case StyleOperator::Kind::kCurl:
+    case StyleOperator::Kind::kFrizz: return 1;
+    case StyleOperator::Kind::kNoise: return kernel::kStyleNoiseTurns;
+    case StyleOperator::Kind::kBraid: return 2;  // a figure of eight
+    default: return 0;
+  }
+}
+
 float fastest_turns(const std::vector<StyleOperator>& style) {
-  using Kind = StyleOperator::Kind;
   float turns = 0;
   for (const StyleOperator& o : style)
-    if (o.amount > 0 && (o.kind == Kind::kWave || o.kind == Kind::kCurl || o.kind == Kind::kFrizz || o.kind == Kind::kNoise))
-      turns = std::max(turns, o.frequency * (o.kind == Kind::kNoise ? kernel::kStyleNoiseTurns : 1.f));
+    if (o.amount > 0) turns = std::max(turns, o.frequency * waves_of(o.kind));
   return turns;
 }
 
