@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "groom/hairmesh/strand_traits.h"
+#include "kernel/scalar.h"
 #include "kit/test_hair_mesh.h"
 
 namespace pelage {
@@ -163,6 +165,19 @@ void expect_like_oracle(const std::vector<StyleOperator>& style) {
       }
     }
   }
+}
+
+TEST(StyleOperators, LocksOfABraidAreThirdsOfTheBundle) {
+  const std::pair<float, float> places[] = {{0, 0}, {0.332f, 0}, {0.334f, 1}, {0.665f, 1}, {0.668f, 2}, {0.999f, 2}, {1, 2}};
+  for (const auto& [u, lock] : places) EXPECT_EQ(kernel::style_braid_lock(u), lock) << u;
+}
+
+// From there on that late it would be a step.
+TEST(StyleOperators, GrowOverAThousandthOfTheStrandAtLeast) {
+  EXPECT_NEAR(kernel::style_growth(1, 0.9995f), 0.5f, 2e-3f);
+  EXPECT_EQ(kernel::style_growth(1, 1), 0);
+  EXPECT_EQ(kernel::style_growth(1, 0.5f), 1);
+  EXPECT_EQ(kernel::style_growth(0.75f, 0.5f), 0.5f);
 }
 
 TEST(StrandGroup, FollowsTheCageAsTheOracleDoes) { expect_like_oracle({}); }
