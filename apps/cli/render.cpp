@@ -177,7 +177,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->type_name("NAME");
   verb.add_option("--alpha", o.alpha,
                   "Opacity from covered samples or exact area: samples, analytic; of link: count, coverage or none; of swr: "
-                  "ratio or coverage")
+                  "kernel, ratio or coverage")
       ->type_name("NAME");
   verb.add_option("--kernel-radius", o.kernel_radius,
                   "link: half of the filter's length for thin hair; it adapts to other hair; 7")

@@ -152,7 +152,8 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (s.method == Method::kSwr && !is_deferred_sample_count(s.samples))
     throw UsageError("--spp", std::to_string(s.samples), "no sample layer of method swr", "use 1, 2, 4 or 8 with --method swr");
   if (o.alpha && s.method == Method::kSwr)
-    s.swr.alpha = by_name<SwrAlpha>("--alpha", *o.alpha, {{"ratio", SwrAlpha::kRatio}, {"coverage", SwrAlpha::kCoverage}});
+    s.swr.alpha = by_name<SwrAlpha>(
+        "--alpha", *o.alpha, {{"kernel", SwrAlpha::kKernel}, {"ratio", SwrAlpha::kRatio}, {"coverage", SwrAlpha::kCoverage}});
   else if (o.alpha && is_linking(s.method))
     s.link.alpha = by_name<LinkAlpha>(
         "--alpha", *o.alpha, {{"count", LinkAlpha::kCount}, {"coverage", LinkAlpha::kCoverage}, {"none", LinkAlpha::kNone}});

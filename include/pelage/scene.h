@@ -192,6 +192,7 @@ struct LinkSettings {
 
 /// Where the opacity of a pixel of method swr comes from.
 enum class SwrAlpha {
+  kKernel,    ///< center hits over all pixels under the kernel; of lone strands as kRatio
   kRatio,     ///< center hits over conservative hits along the strand; Lipp 2026, §3.3.3
   kCoverage,  ///< exact area of the strands, by another layer of raster
 };
@@ -204,13 +205,13 @@ struct SwrSettings {
   bool depth_correction = true;   ///< eq. 8: of light that comes through strands that were left out
   bool filter = true;             ///< reconnection filter, of pictures of one sample; false: samples as they are
   int radius = 5;                 ///< r of §3.3.1, pixels, 1…15
-  float s_parallel = 0.56f;       ///< s∥: σ∥ = r·s∥
-  float s_perpendicular = 0.28f;  ///< s⊥: σ⊥ = r·s⊥
+  float s_parallel = 0.36f;       ///< s∥: σ∥ = r·s∥
+  float s_perpendicular = 0.15f;  ///< s⊥: σ⊥ = r·s⊥
   float sigma_color = 0.9f;       ///< σ_c of eq. 10, linear radiance
-  float depth_tolerance = 1;      ///< neighbors farther off than this share of the hair's depth do not count
+  float depth_tolerance = 0.05f;  ///< neighbors farther off than this share of the hair's depth do not count
   float connect_depth = 0.05f;    ///< share of the hair's depth from which a strand in front of the pixel's own is another one
   float strip = 0.5f;             ///< w_strip, pixels: half the width of the strip in which hits are counted
-  SwrAlpha alpha = SwrAlpha::kRatio;
+  SwrAlpha alpha = SwrAlpha::kKernel;
   bool occlusion = true;  ///< baked occlusion dims the probe's light; false: strands see the whole sky
 };
 

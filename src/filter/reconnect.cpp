@@ -1,6 +1,7 @@
 #include "filter/reconnect.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -35,12 +36,13 @@ class TapTable {
           if (weight >= kLeastReconnectWeight) put(offset, along, weight);
         }
       while (offset_.size() % ReconnectTaps::kLanes != 0) put(0, 0, 0);  // whole lanes; they weigh nothing
+      total_.push_back(sum_lanes(std::span(weight_).subspan(first_.back())));
       first_.push_back(offset_.size()), first_in_strip_.push_back(strip_.size());
     }
   }
   ReconnectTaps of(int cell) const {
     const auto c = static_cast<std::size_t>(cell);
-    return {first_[c + 1] - first_[c], &offset_[first_[c]], &along_[first_[c]], &weight_[first_[c]]};
+    return {first_[c + 1] - first_[c], &offset_[first_[c]], &along_[first_[c]], &weight_[first_[c]], total_[c]};
   }
   struct StripTap {
     std::int32_t offset;  // in pixels of the padded picture
@@ -57,48 +59,53 @@ class TapTable {
   }
   std::vector<std::size_t> first_, first_in_strip_;
   std::vector<std::int32_t> offset_;
-  std::vector<float> along_, weight_;
+  std::vector<float> along_, weight_, total_;
   std::vector<StripTap> strip_;
 };
 
-constexpr float kNoDepth = 1e30f;  // of pixels without a hit: no neighbor is as deep
+constexpr int kMostAroundLone = 3;  // pixels that a lone strand touches around one of its own, and one more
 
-/// Both layers with a border of `reach` empty pixels, so that a kernel needs no ends.
+/// Both layers with a border of `reach` pixels that repeat those at the edge, so that a kernel needs no ends. Depths are shares
+/// of the hair's depth range, or kNoDepth.
 struct Padded {
   int reach;
   std::size_t stride;
   Buffer<float> r, g, b;          // color of the strand that the center shows
-  Buffer<float> center, touched;  // depth of either layer in units of the hair's depth range, or kNoDepth
+  Buffer<float> center, touched;  // depth of either layer
+  Buffer<float> front;            // that of the conservative layer where the center is hit
 
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y + reach) * stride + static_cast<std::size_t>(x + reach);
   }
 };
 
+float depth_of(PixelKey key) {
+  return key == kEmptyPixel ? kNoDepth : static_cast<float>(deferred::depth_level(key)) * (1 / kernel::kRasterDepthLevels);
+}
+
 Padded pad_layers(const DeferredBuffer& buffer, const Radiance& radiance, int reach) {
   const int width = buffer.view.width, height = buffer.view.height;
   Padded p;
   p.reach = reach, p.stride = static_cast<std::size_t>(width + 2 * reach);
-  const std::size_t size = p.stride * static_cast<std::size_t>(height + 2 * reach);
-  for (Buffer<float>* layer : {&p.r, &p.g, &p.b, &p.center, &p.touched}) layer->resize(size);
-  const auto depth_of = [](PixelKey key) {
-    return key == kEmptyPixel ? kNoDepth : static_cast<float>(deferred::depth_level(key)) * (1 / kernel::kRasterDepthLevels);
-  };
-  parallel_for(static_cast<std::size_t>(height + 2 * reach), 16, [&](std::size_t first, std::size_t last) {
-    const auto clear = [&](Buffer<float>& layer, float value) {
-      std::fill(&layer[first * p.stride], &layer[first * p.stride] + (last - first) * p.stride, value);
-    };
-    clear(p.r, 0), clear(p.g, 0), clear(p.b, 0), clear(p.center, kNoDepth), clear(p.touched, kNoDepth);
-    for (int y = static_cast<int>(first) - reach; y < static_cast<int>(last) - reach; ++y) {
-      if (y < 0 || y >= height) continue;
-      std::size_t q = static_cast<std::size_t>(y) * static_cast<std::size_t>(width), to = p.index(0, y);
-      for (int x = 0; x < width; ++x, ++q, ++to) {
-        if (buffer.conservative[q] == kEmptyPixel) continue;
-        p.touched[to] = depth_of(buffer.conservative[q]), p.center[to] = depth_of(buffer.center[q]);
-        if (const std::uint32_t i = radiance.index[q]; i != Radiance::kNone) {
-          const Vec3 c = radiance.color[i];
-          p.r[to] = c.x, p.g[to] = c.y, p.b[to] = c.z;
-        }
+  const auto rows = static_cast<std::size_t>(height + 2 * reach);
+  const std::array<Buffer<float>*, 6> layers{&p.r, &p.g, &p.b, &p.center, &p.touched, &p.front};
+  for (Buffer<float>* layer : layers) layer->resize(p.stride * rows);
+  const auto border = static_cast<std::size_t>(reach), inside = static_cast<std::size_t>(width);
+  parallel_for(rows, 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      const int y = std::clamp(static_cast<int>(row) - reach, 0, height - 1);
+      std::size_t q = static_cast<std::size_t>(y) * inside, to = row * p.stride + border;
+      for (std::size_t x = 0; x < inside; ++x, ++q, ++to) {
+        const bool shown = radiance.index[q] != Radiance::kNone;
+        const Vec3 c = shown ? radiance.color[radiance.index[q]] : Vec3();
+        p.r[to] = c.x, p.g[to] = c.y, p.b[to] = c.z;
+        p.center[to] = depth_of(buffer.center[q]), p.touched[to] = depth_of(buffer.conservative[q]);
+        p.front[to] = buffer.center[q] == kEmptyPixel ? kNoDepth : p.touched[to];
+      }
+      for (Buffer<float>* layer : layers) {
+        float* begin = &(*layer)[row * p.stride];
+        std::fill(begin, begin + border, begin[border]);
+        std::fill(begin + border + inside, begin + p.stride, begin[border + inside - 1]);
       }
     }
   });
@@ -130,6 +137,7 @@ class Reconnecter {
     const PixelKey touched = buffer_.conservative[at], center = buffer_.center[at];
     if (touched == kEmptyPixel) return {0, 0, 0, 0};
     const std::size_t middle = padded_.index(x, y);
+    if (settings_.alpha != SwrAlpha::kRatio && !lone(middle)) return amid_others(touched, x, y, at);
     if (center == kEmptyPixel) return promoted(touched, x, y, at);
     const Vec4 own = centered(center, x, y, at);
     if (padded_.touched[middle] > padded_.center[middle] - settings_.connect_depth) return own;
@@ -149,7 +157,7 @@ class Reconnecter {
     const Vec3 along = transform_vector(v.world_to_camera, deferred::tangent(key));
     const Vec2 on_screen = project_direction(v, place, along);
     const float pixels = length(on_screen);
-    const float depth = static_cast<float>(deferred::depth_level(key)) * (1 / kernel::kRasterDepthLevels);
+    const float depth = depth_of(key);
     if (!(pixels > 0)) return {0, depth, 0};
     const Vec2 t = on_screen * (1 / pixels);
     const int cell = DirectionCells::cell_of(MeanDirection::doubled(t));
@@ -157,6 +165,27 @@ class Reconnecter {
     // No steeper than a pixel for a pixel: what is seen nearly end-on is short.
     const float steepest = 1 / pixels_per_metre(v, z), per_pixel = std::clamp(along.z / pixels, -steepest, steepest);
     return {cell, depth, sign * per_pixel / (buffer_.range.far_end - buffer_.range.near_end)};
+  }
+
+  /// Whether few of the eight pixels around are touched by any strand.
+  bool lone(std::size_t middle) const {
+    int touched = 0;
+    for (const std::size_t row : {middle - padded_.stride, middle, middle + padded_.stride})
+      for (std::size_t q = row - 1; q <= row + 1; ++q) touched += padded_.touched[q] != kNoDepth;
+    return touched <= 1 + kMostAroundLone;
+  }
+
+  /// In dense hair: mean and share of the hits under the kernel along what is in front. Color comes from neighbors that what is in
+  /// front of is as deep; where there are none, from all.
+  Vec4 amid_others(PixelKey key, int x, int y, std::size_t at) const {
+    const ScreenStrand s = strand(key, x, y);
+    const std::size_t middle = padded_.index(x, y);
+    const ReconnectTaps taps = taps_.of(s.cell);
+    const ReconnectPixels here{&padded_.front[middle], &padded_.r[middle], &padded_.g[middle], &padded_.b[middle]};
+    TapSums sums = sum_taps(taps, here, {s.depth, s.slope, settings_.depth_tolerance, 0});
+    if (!(sums.alike.w > 0)) sums = sum_taps(taps, here, {s.depth, s.slope, 0.5f * kNoDepth, 0});
+    const float alpha = coverage_.empty() ? sums.hits / taps.total : coverage_[at];
+    return premultiplied({sums.alike}, alpha);
   }
 
   /// compare: whether the term of color counts. nearby: whether only what is as deep counts, hits and colors: for a strand that
@@ -172,7 +201,7 @@ class Reconnecter {
       g.all += touch && (!nearby || std::fabs(touched - expected) <= tolerance) ? 1.f : 0.f;
     }
     const ReconnectPixels at{&padded_.center[middle], &padded_.r[middle], &padded_.g[middle], &padded_.b[middle]};
-    g.sum = sum_taps(taps_.of(s.cell), at, {s.depth, s.slope, tolerance, compare ? color_scale_ : 0.f});
+    g.sum = sum_taps(taps_.of(s.cell), at, {s.depth, s.slope, tolerance, compare ? color_scale_ : 0.f}).alike;
     return g;
   }
 

@@ -11,12 +11,13 @@ namespace pelage {
 
 /// Filters `buffer`, which has both layers; `radiance` is that of its center layer.
 ///
-/// A pixel whose center is hit takes the mean of its neighbors under a kernel that lies along its strand (eq. 9 and 10); one that is
-/// only touched borrows color from neighbors whose centers are hit; where what touches it lies in front of what its center
-/// shows, the one is laid over the other. Neighbors count that are as deep as the strand would be there, by `depth_tolerance`, and by
-/// `connect_depth` for a strand that is laid over another. Opacity is the share of
-/// center hits among all hits in a strip along the strand; where the pixel's own hit stands behind another strand, it is opaque.
-/// `coverage`, where not empty, [h·w] 0…1, takes the place of that share.
+/// In dense hair a pixel takes mean color and share of the center hits under a kernel that lies along the strand in front (eq. 9);
+/// colors count of neighbors whose conservative hits are as deep as that strand would be there, by `depth_tolerance`. Lone strands,
+/// and with SwrAlpha::kRatio all pixels, are reconnected as published: a pixel whose center is hit takes the mean of its neighbors
+/// along its own strand (eq. 10); one that is only touched borrows color from neighbors whose centers are hit; where what touches
+/// it lies in front of what its center shows by `connect_depth`, the one is laid over the other, which is opaque then. Opacity is
+/// the share of center hits among all hits in a strip along the strand.
+/// `coverage`, where not empty, [h·w] 0…1, takes the place of either share.
 /// Deterministic. O(pixels with hair · taps), in parallel.
 HairPicture reconnect(const DeferredBuffer& buffer, const Radiance& radiance, const SwrSettings& settings,
                       const Buffer<float>& coverage = {});

@@ -1,5 +1,7 @@
 #include "filter/reconnect_taps.h"
 
+#include <array>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/reconnect_taps.cpp"
 #include <hwy/foreach_target.h>
@@ -21,39 +23,53 @@ constexpr std::size_t kLanes = ReconnectTaps::kLanes;
 /// kLanes sums as whole vectors.
 struct Sums {
   static constexpr std::size_t kVectors = kLanes;  // at most, with one lane
-  Float r[kVectors], g[kVectors], b[kVectors], w[kVectors];
+  Float r[kVectors], g[kVectors], b[kVectors], w[kVectors], hits[kVectors];
 };
 
 float total(const Float* sums, std::size_t vectors) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
   HWY_ALIGN float parts[kLanes];
   for (std::size_t v = 0; v < vectors; ++v) store(sums[v], parts + v * lanes);
-  for (std::size_t step = kLanes / 2; step > 0; step /= 2)
-    for (std::size_t i = 0; i < step; ++i) parts[i] += parts[i + step];
-  return parts[0];
+  return sum_lanes(parts);
 }
 
-Vec4 SumTaps(const ReconnectTaps& taps, const ReconnectPixels& m, const ReconnectStrand& s) {
+/// e^−x, nearly.
+HWY_INLINE Float falling(Float x) {
+  const Float one(1.0f);
+  return one / (one + x * (one + x * (Float(0.5f) + x * Float(1.0f / 6.0f))));
+}
+
+template <bool kColor>
+TapSums Sum(const ReconnectTaps& taps, const ReconnectPixels& m, const ReconnectStrand& s) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes()), vectors = kLanes / lanes;
+  const Float none(0.0f), nowhere(kNoDepth);
   Sums sums;
-  for (std::size_t v = 0; v < vectors; ++v) sums.r[v] = sums.g[v] = sums.b[v] = sums.w[v] = Float(0.0f);
-  const Float one(1.0f), r0(*m.r), g0(*m.g), b0(*m.b);
+  for (std::size_t v = 0; v < vectors; ++v) sums.r[v] = sums.g[v] = sums.b[v] = sums.w[v] = sums.hits[v] = none;
+  const Float r0(*m.r), g0(*m.g), b0(*m.b);
   for (std::size_t i = 0; i < taps.count; i += kLanes)
     for (std::size_t v = 0; v < vectors; ++v) {
       const std::size_t at = i + v * lanes;
       const wide::Int offset = wide::load(taps.offset + at);
+      const Float depth = wide::gather(m.depth, offset), weight = wide::load(taps.weight + at);
+      sums.hits[v] = sums.hits[v] + select(depth < nowhere, weight, none);
       const Float expected = Float(s.depth) + Float(s.slope) * wide::load(taps.along + at);
-      const Mask alike = abs(wide::gather(m.depth, offset) - expected) <= Float(s.tolerance);
+      const Mask alike = abs(depth - expected) <= Float(s.tolerance);
       if (!wide::any(alike)) continue;
       const Float r = wide::gather(m.r, offset), g = wide::gather(m.g, offset), b = wide::gather(m.b, offset);
-      const Float dr = r - r0, dg = g - g0, db = b - b0;
-      const Float x = (dr * dr + dg * dg + db * db) * Float(s.color_scale);
-      const Float falling = one / (one + x * (one + x * (Float(0.5f) + x * Float(1.0f / 6.0f))));
-      const Float w = select(alike, wide::load(taps.weight + at) * falling, Float(0.0f));
+      Float w = select(alike, weight, none);
+      if constexpr (kColor) {
+        const Float dr = r - r0, dg = g - g0, db = b - b0;
+        w = w * falling((dr * dr + dg * dg + db * db) * Float(s.color_scale));
+      }
       sums.r[v] = sums.r[v] + r * w, sums.g[v] = sums.g[v] + g * w;
       sums.b[v] = sums.b[v] + b * w, sums.w[v] = sums.w[v] + w;
     }
-  return {total(sums.r, vectors), total(sums.g, vectors), total(sums.b, vectors), total(sums.w, vectors)};
+  return {{total(sums.r, vectors), total(sums.g, vectors), total(sums.b, vectors), total(sums.w, vectors)},
+          total(sums.hits, vectors)};
+}
+
+TapSums SumTaps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand) {
+  return strand.color_scale > 0 ? Sum<true>(taps, middle, strand) : Sum<false>(taps, middle, strand);
 }
 
 }  // namespace
@@ -66,8 +82,16 @@ namespace pelage {
 
 HWY_EXPORT(SumTaps);
 
-Vec4 sum_taps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand) {
+TapSums sum_taps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand) {
   return HWY_DYNAMIC_DISPATCH(SumTaps)(taps, middle, strand);
+}
+
+float sum_lanes(std::span<const float> weights) {
+  std::array<float, ReconnectTaps::kLanes> parts{};
+  for (std::size_t i = 0; i < weights.size(); ++i) parts[i % ReconnectTaps::kLanes] += weights[i];
+  for (std::size_t step = ReconnectTaps::kLanes / 2; step > 0; step /= 2)
+    for (std::size_t i = 0; i < step; ++i) parts[i] += parts[i + step];
+  return parts[0];
 }
 
 }  // namespace pelage

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace pelage {
 
@@ -15,9 +16,16 @@ struct ReconnectTaps {
   const std::int32_t* offset;  ///< in pixels of the padded picture
   const float* along;          ///< d∥, pixels: along the strand, to the right or straight down
   const float* weight;         ///< spatial term of Lipp 2026, eq. 10
+  float total;                 ///< sum_lanes() of the weights
 };
 
-/// Where the pixel in the middle stands in the layers of a padded picture: depth of its center, and color.
+/// The sum in kLanes parts, as sum_taps() makes its own; weights.size() is a multiple of kLanes.
+float sum_lanes(std::span<const float> weights);
+
+inline constexpr float kNoDepth = 1e30f;  ///< of pixels without a hit: no neighbor is as deep
+
+/// Where the pixel in the middle stands in the layers of a padded picture: depth that neighbors are compared by, kNoDepth where
+/// the center is not hit, and color.
 struct ReconnectPixels {
   const float *depth, *r, *g, *b;
 };
@@ -28,8 +36,13 @@ struct ReconnectStrand {
   float depth, slope, tolerance, color_scale;
 };
 
-/// Σ w·(r, g, b, 1) over the neighbors that count: eq. 10. e^−x of the color's term is 1/(1 + x + x²/2 + x³/6), too large by
-/// 0.028 at most, at x = 3. Sums are made in kLanes parts, so every instruction set gives the same bits.
-Vec4 sum_taps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand);
+struct TapSums {
+  Vec4 alike;  ///< Σ w·(r, g, b, 1) over the neighbors that count: eq. 10
+  float hits;  ///< Σ of the spatial terms of neighbors whose centers are hit, whatever their depth
+};
+
+/// e^−x of the color's term is 1/(1 + x + x²/2 + x³/6), too large by 0.028 at most, at x = 3. Sums are made in kLanes parts, so
+/// every instruction set gives the same bits.
+TapSums sum_taps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand);
 
 }  // namespace pelage

@@ -300,7 +300,8 @@ const Fields<GroomText>& groom_fields() {
 
 const Fields<SwrSettings>& swr_fields() {
   using S = SwrSettings;
-  static const Names<SwrAlpha> alphas{{"ratio", SwrAlpha::kRatio}, {"coverage", SwrAlpha::kCoverage}};
+  static const Names<SwrAlpha> alphas{
+      {"kernel", SwrAlpha::kKernel}, {"ratio", SwrAlpha::kRatio}, {"coverage", SwrAlpha::kCoverage}};
   static const Fields<S> table{
       boolean_field("lod", "Whether bundles that are small on the screen have fewer strands and points", &S::lod),
       integer_field("points", "Control points of a strand at full detail", &S::points, 3, 127),
