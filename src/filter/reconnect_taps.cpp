@@ -26,11 +26,18 @@ struct Sums {
   Float r[kVectors], g[kVectors], b[kVectors], w[kVectors], hits[kVectors];
 };
 
+/// Of kLanes parts, which are spoiled.
+HWY_INLINE float sum_parts(float* parts) {
+  for (std::size_t step = kLanes / 2; step > 0; step /= 2)
+    for (std::size_t i = 0; i < step; ++i) parts[i] += parts[i + step];
+  return parts[0];
+}
+
 float total(const Float* sums, std::size_t vectors) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
   HWY_ALIGN float parts[kLanes];
   for (std::size_t v = 0; v < vectors; ++v) store(sums[v], parts + v * lanes);
-  return sum_lanes(parts);
+  return sum_parts(parts);
 }
 
 /// e^−x, nearly.
@@ -89,9 +96,7 @@ TapSums sum_taps(const ReconnectTaps& taps, const ReconnectPixels& middle, const
 float sum_lanes(std::span<const float> weights) {
   std::array<float, ReconnectTaps::kLanes> parts{};
   for (std::size_t i = 0; i < weights.size(); ++i) parts[i % ReconnectTaps::kLanes] += weights[i];
-  for (std::size_t step = ReconnectTaps::kLanes / 2; step > 0; step /= 2)
-    for (std::size_t i = 0; i < step; ++i) parts[i] += parts[i + step];
-  return parts[0];
+  return HWY_NAMESPACE::sum_parts(parts.data());
 }
 
 }  // namespace pelage

@@ -32,7 +32,7 @@ constexpr std::size_t kGroupsPerTask = 8;
 struct Worker {
   StrandGroup group;
   StrandBlock block;
-  FragmentBuffer at_centers, touching;
+  FragmentBuffer fragments;
   ScreenBlock runs;
   CoverageScratch coverage;
 };
@@ -164,10 +164,10 @@ class TargetLayers {
     const ScreenBlock& block = project_group(w.group, jobs_[bundle.groom], bundle.width_scale, w.block);
     const int width = out_.view.width, height = out_.view.height;
     if (layers_.center)
-      raster_deferred(block, out_.range, width, height, w.at_centers, w.touching, out_.center.data(),
+      raster_deferred(block, out_.range, width, height, w.fragments, out_.center.data(),
                       layers_.conservative ? out_.conservative.data() : nullptr);
     if (layers_.samples > 0)
-      raster_deferred_samples(block, out_.range, width, height, layers_.samples, w.at_centers, locks_, out_.sample_keys.data());
+      raster_deferred_samples(block, out_.range, width, height, layers_.samples, w.fragments, locks_, out_.sample_keys.data());
     if (coverage_) coverage_->draw(block, w);
   }
 

@@ -22,10 +22,10 @@ using wide::Float;
 using wide::Mask;
 using Uints = hn::Vec<wide::UintTag>;
 
-/// Where the fragments of a walk go; a layer that is null takes none.
+/// Where the fragments of a walk go; without the conservative layer it is null.
 struct Layers {
   DeferredKeys make;
-  FragmentBuffer &at_centers, &touching;
+  FragmentBuffer& fragments;
   PixelKey *center, *conservative;
 };
 
@@ -50,10 +50,13 @@ HWY_INLINE void visit_column(const SegmentLanes& w, Float column, Mask on_band, 
     const Mask covered = open && row >= wide::raster_first_row(center, half, half_pixel) &&
                          wide::raster_row_covered(row, half_pixel, center, half) &&
                          wide::raster_between_caps(band, u, row + half_pixel) && wide::raster_between_ends(band, u);
-    if (wide::any(covered)) append_fragments(layers.make, covered, pixel, rank, id, layers.at_centers, layers.center);
     if (kConservative) {
       const Mask taken = covered || (open && beside && row >= touched.x && row <= touched.y);
-      append_fragments(layers.make, taken, pixel, rank, id, layers.touching, layers.conservative);
+      const Uints flag = hn::IfThenElseZero(hn::RebindMask(kUint, covered.m), hn::Set(kUint, kCoversCenter));
+      if (is_full(layers.fragments)) flush_both(layers.make, layers.fragments, layers.center, layers.conservative);
+      append(taken, pixel, rank, hn::Or(id, flag), layers.fragments);
+    } else if (wide::any(covered)) {
+      append_fragments(layers.make, covered, pixel, rank, id, layers.fragments, layers.center);
     }
     row = row + Float(1.0f);
     open = open && row <= highest;
@@ -76,13 +79,15 @@ void walk_block(const ScreenBlock& block, int width, int height, const Layers& l
   }
 }
 
-void Deferred(const ScreenBlock& block, const DepthRange& range, int width, int height, FragmentBuffer& at_centers,
-              FragmentBuffer& touching, PixelKey* center, PixelKey* conservative) {
-  const Layers layers{deferred_keys(block, range), at_centers, touching, center, conservative};
-  if (conservative) walk_block<true>(block, width, height, layers);
-  else walk_block<false>(block, width, height, layers);
-  flush_fragments(layers.make, at_centers, center);
-  if (conservative) flush_fragments(layers.make, touching, conservative);
+void Deferred(const ScreenBlock& block, const DepthRange& range, int width, int height, FragmentBuffer& fragments,
+              PixelKey* center, PixelKey* conservative) {
+  const Layers layers{deferred_keys(block, range), fragments, center, conservative};
+  if (!conservative) {
+    walk_block<false>(block, width, height, layers);
+    return flush_fragments(layers.make, fragments, center);
+  }
+  walk_block<true>(block, width, height, layers);
+  flush_both(layers.make, fragments, center, conservative);
 }
 
 }  // namespace
@@ -95,9 +100,9 @@ namespace pelage {
 
 HWY_EXPORT(Deferred);
 
-void raster_deferred(const ScreenBlock& block, const DepthRange& range, int width, int height, FragmentBuffer& at_centers,
-                     FragmentBuffer& touching, PixelKey* center, PixelKey* conservative) {
-  HWY_DYNAMIC_DISPATCH(Deferred)(block, range, width, height, at_centers, touching, center, conservative);
+void raster_deferred(const ScreenBlock& block, const DepthRange& range, int width, int height, FragmentBuffer& fragments,
+                     PixelKey* center, PixelKey* conservative) {
+  HWY_DYNAMIC_DISPATCH(Deferred)(block, range, width, height, fragments, center, conservative);
 }
 
 }  // namespace pelage

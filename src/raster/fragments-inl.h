@@ -89,16 +89,54 @@ HWY_NOINLINE void flush_fragments(const Keys& make, FragmentBuffer& f, PixelKey*
   f.count = 0;
 }
 
-/// Appends the lanes in `m`; flushes before where there is no room.
+/// Both layers of deferred rasterization: fragments touch their pixels, those with kCoversCenter in their id cover the center, too.
+inline constexpr std::uint32_t kCoversCenter = 1u << 31;
+inline constexpr std::uint32_t kFragmentId = kCoversCenter - 1;
+
 template <class Keys>
-HWY_INLINE void append_fragments(const Keys& make, wide::Mask m, hn::Vec<wide::UintTag> pixel, hn::Vec<wide::UintTag> rank,
-                                 hn::Vec<wide::UintTag> id, FragmentBuffer& f, PixelKey* keys) {
-  if (f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity) flush_fragments(make, f, keys);
+HWY_NOINLINE void flush_both(const Keys& make, FragmentBuffer& f, PixelKey* center, PixelKey* conservative) {
+  const std::size_t lanes = hn::Lanes(kUint), count = f.count, ahead = FragmentBuffer::kPadding - lanes;
+  std::fill(&f.pixel[count], &f.pixel[count] + FragmentBuffer::kPadding, 0u);
+  const auto prefetch = [&](std::size_t i) { hwy::Prefetch(conservative + f.pixel[i]), hwy::Prefetch(center + f.pixel[i]); };
+  for (std::size_t i = 0; i < count && i < ahead; ++i) prefetch(i);
+  const auto enter = [&](std::size_t i, std::uint64_t bits, PixelKey* keys) {
+    for (; bits != 0; bits &= bits - 1) {
+      const std::size_t l = i + static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+      atomic_min(keys[f.pixel[l]], make.key(f.rank[l], f.id[l] & kFragmentId));
+    }
+  };
+  for (std::size_t i = 0; i < count; i += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) prefetch(i + ahead + l);
+    const std::uint64_t used = count - i < lanes ? (std::uint64_t{1} << (count - i)) - 1 : ~std::uint64_t{0};
+    enter(i, passing(&f.pixel[i], &f.rank[i], conservative) & used, conservative);
+    std::uint64_t covers = 0;
+    const auto flags = hn::BitCast(kInt, hn::LoadU(kUint, &f.id[i]));  // kCoversCenter is their sign
+    hn::StoreMaskBits(kInt, hn::Lt(flags, hn::Zero(kInt)), reinterpret_cast<std::uint8_t*>(&covers));
+    covers &= used;
+    if (covers != 0) enter(i, passing(&f.pixel[i], &f.rank[i], center) & covers, center);
+  }
+  f.count = 0;
+}
+
+/// Whether another vector of fragments may be too many.
+HWY_INLINE bool is_full(const FragmentBuffer& f) { return f.count + hn::Lanes(kUint) > FragmentBuffer::kCapacity; }
+
+/// Appends the lanes in `m` to a buffer that is not full.
+HWY_INLINE void append(wide::Mask m, hn::Vec<wide::UintTag> pixel, hn::Vec<wide::UintTag> rank, hn::Vec<wide::UintTag> id,
+                       FragmentBuffer& f) {
   const Compressor compress(m);
   hn::StoreU(compress(pixel), kUint, &f.pixel[f.count]);
   hn::StoreU(compress(rank), kUint, &f.rank[f.count]);
   hn::StoreU(compress(id), kUint, &f.id[f.count]);
   f.count += compress.count();
+}
+
+/// Appends the lanes in `m`; flushes before where there is no room.
+template <class Keys>
+HWY_INLINE void append_fragments(const Keys& make, wide::Mask m, hn::Vec<wide::UintTag> pixel, hn::Vec<wide::UintTag> rank,
+                                 hn::Vec<wide::UintTag> id, FragmentBuffer& f, PixelKey* keys) {
+  if (is_full(f)) flush_fragments(make, f, keys);
+  append(m, pixel, rank, id, f);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -32,9 +32,9 @@ void raster_samples(const ScreenBlock& block, int width, int height, int samples
                     PixelKey* keys);
 
 /// Walks the strands of a block of assemble_group(): what covers pixel centers goes to `center`, what touches pixels at all to
-/// `conservative`, in one walk; either may be null. Keys are those of DeferredBuffer, whose depth is in `range`.
-void raster_deferred(const ScreenBlock& block, const DepthRange& range, int width, int height, FragmentBuffer& at_centers,
-                     FragmentBuffer& touching, PixelKey* center, PixelKey* conservative);
+/// `conservative`, in one walk; the latter may be null. Keys are those of DeferredBuffer, whose depth is in `range`.
+void raster_deferred(const ScreenBlock& block, const DepthRange& range, int width, int height, FragmentBuffer& fragments,
+                     PixelKey* center, PixelKey* conservative);
 /// Their sample layers, as of raster_samples().
 void raster_deferred_samples(const ScreenBlock& block, const DepthRange& range, int width, int height, int samples,
                              FragmentBuffer& fragments, TileLocks& locks, PixelKey* keys);
