@@ -97,7 +97,10 @@ template <class Keys>
 HWY_NOINLINE void flush_both(const Keys& make, FragmentBuffer& f, PixelKey* center, PixelKey* conservative) {
   const std::size_t lanes = hn::Lanes(kUint), count = f.count, ahead = FragmentBuffer::kPadding - lanes;
   std::fill(&f.pixel[count], &f.pixel[count] + FragmentBuffer::kPadding, 0u);
-  const auto prefetch = [&](std::size_t i) { hwy::Prefetch(conservative + f.pixel[i]), hwy::Prefetch(center + f.pixel[i]); };
+  const auto prefetch = [&](std::size_t i) {
+    hwy::Prefetch(conservative + f.pixel[i]);
+    hwy::Prefetch((f.id[i] & kCoversCenter ? center : conservative) + f.pixel[i]);
+  };
   for (std::size_t i = 0; i < count && i < ahead; ++i) prefetch(i);
   const auto enter = [&](std::size_t i, std::uint64_t bits, PixelKey* keys) {
     for (; bits != 0; bits &= bits - 1) {
@@ -112,8 +115,7 @@ HWY_NOINLINE void flush_both(const Keys& make, FragmentBuffer& f, PixelKey* cent
     std::uint64_t covers = 0;
     const auto flags = hn::BitCast(kInt, hn::LoadU(kUint, &f.id[i]));  // kCoversCenter is their sign
     hn::StoreMaskBits(kInt, hn::Lt(flags, hn::Zero(kInt)), reinterpret_cast<std::uint8_t*>(&covers));
-    covers &= used;
-    if (covers != 0) enter(i, passing(&f.pixel[i], &f.rank[i], center) & covers, center);
+    enter(i, covers & used, center);  // few of a thin strand's
   }
   f.count = 0;
 }
