@@ -36,13 +36,12 @@ class TapTable {
           if (weight >= kLeastReconnectWeight) put(offset, along, weight);
         }
       while (offset_.size() % ReconnectTaps::kLanes != 0) put(0, 0, 0);  // whole lanes; they weigh nothing
-      total_.push_back(sum_lanes(std::span(weight_).subspan(first_.back())));
       first_.push_back(offset_.size()), first_in_strip_.push_back(strip_.size());
     }
   }
   ReconnectTaps of(int cell) const {
     const auto c = static_cast<std::size_t>(cell);
-    return {first_[c + 1] - first_[c], &offset_[first_[c]], &along_[first_[c]], &weight_[first_[c]], total_[c]};
+    return {first_[c + 1] - first_[c], &offset_[first_[c]], &along_[first_[c]], &weight_[first_[c]]};
   }
   struct StripTap {
     std::int32_t offset;  // in pixels of the padded picture
@@ -59,7 +58,7 @@ class TapTable {
   }
   std::vector<std::size_t> first_, first_in_strip_;
   std::vector<std::int32_t> offset_;
-  std::vector<float> along_, weight_, total_;
+  std::vector<float> along_, weight_;
   std::vector<StripTap> strip_;
 };
 
@@ -72,7 +71,7 @@ struct Padded {
   std::size_t stride;
   Buffer<float> r, g, b;          // color of the strand that the center shows
   Buffer<float> center, touched;  // depth of either layer
-  Buffer<float> front;            // that of the conservative layer where the center is hit
+  Buffer<float> front;            // that of the conservative layer where the center is hit, else that of the opaque scene
 
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y + reach) * stride + static_cast<std::size_t>(x + reach);
@@ -100,7 +99,8 @@ Padded pad_layers(const DeferredBuffer& buffer, const Radiance& radiance, int re
         const Vec3 c = shown ? radiance.color[radiance.index[q]] : Vec3();
         p.r[to] = c.x, p.g[to] = c.y, p.b[to] = c.z;
         p.center[to] = depth_of(buffer.center[q]), p.touched[to] = depth_of(buffer.conservative[q]);
-        p.front[to] = buffer.center[q] == kEmptyPixel ? kNoDepth : p.touched[to];
+        const float behind = buffer.opaque.empty() || buffer.opaque[q] > 1 ? kNoDepth : opaque_tap(buffer.opaque[q]);
+        p.front[to] = buffer.center[q] == kEmptyPixel ? behind : p.touched[to];
       }
       for (Buffer<float>* layer : layers) {
         float* begin = &(*layer)[row * p.stride];
@@ -175,7 +175,8 @@ class Reconnecter {
     return touched <= 1 + kMostAroundLone;
   }
 
-  /// In dense hair: mean and share of the hits under the kernel along what is in front. Color comes from neighbors that what is in
+  /// In dense hair: mean and share of the hits under the kernel along what is in front, but for pixels that the opaque scene hides
+  /// from it. Color comes from neighbors that what is in
   /// front of is as deep; where there are none, from all.
   Vec4 amid_others(PixelKey key, int x, int y, std::size_t at) const {
     const ScreenStrand s = strand(key, x, y);
@@ -184,7 +185,7 @@ class Reconnecter {
     const ReconnectPixels here{&padded_.front[middle], &padded_.r[middle], &padded_.g[middle], &padded_.b[middle]};
     TapSums sums = sum_taps(taps, here, {s.depth, s.slope, settings_.depth_tolerance, 0});
     if (!(sums.alike.w > 0)) sums = sum_taps(taps, here, {s.depth, s.slope, 0.5f * kNoDepth, 0});
-    const float alpha = coverage_.empty() ? sums.hits / taps.total : coverage_[at];
+    const float alpha = !coverage_.empty() ? coverage_[at] : sums.seen > 0 ? std::min(sums.hits / sums.seen, 1.f) : 0;
     return premultiplied({sums.alike}, alpha);
   }
 

@@ -1,6 +1,6 @@
 #include "filter/reconnect_taps.h"
 
-#include <array>
+#include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/reconnect_taps.cpp"
@@ -23,21 +23,16 @@ constexpr std::size_t kLanes = ReconnectTaps::kLanes;
 /// kLanes sums as whole vectors.
 struct Sums {
   static constexpr std::size_t kVectors = kLanes;  // at most, with one lane
-  Float r[kVectors], g[kVectors], b[kVectors], w[kVectors], hits[kVectors];
+  Float r[kVectors], g[kVectors], b[kVectors], w[kVectors], hits[kVectors], seen[kVectors];
 };
-
-/// Of kLanes parts, which are spoiled.
-HWY_INLINE float sum_parts(float* parts) {
-  for (std::size_t step = kLanes / 2; step > 0; step /= 2)
-    for (std::size_t i = 0; i < step; ++i) parts[i] += parts[i + step];
-  return parts[0];
-}
 
 float total(const Float* sums, std::size_t vectors) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
   HWY_ALIGN float parts[kLanes];
   for (std::size_t v = 0; v < vectors; ++v) store(sums[v], parts + v * lanes);
-  return sum_parts(parts);
+  for (std::size_t step = kLanes / 2; step > 0; step /= 2)
+    for (std::size_t i = 0; i < step; ++i) parts[i] += parts[i + step];
+  return parts[0];
 }
 
 /// e^−x, nearly.
@@ -49,18 +44,20 @@ HWY_INLINE Float falling(Float x) {
 template <bool kColor>
 TapSums Sum(const ReconnectTaps& taps, const ReconnectPixels& m, const ReconnectStrand& s) {
   const std::size_t lanes = static_cast<std::size_t>(wide::lanes()), vectors = kLanes / lanes;
-  const Float none(0.0f), nowhere(kNoDepth);
+  const Float none(0.0f);
   Sums sums;
-  for (std::size_t v = 0; v < vectors; ++v) sums.r[v] = sums.g[v] = sums.b[v] = sums.w[v] = sums.hits[v] = none;
+  for (Float* sum : {sums.r, sums.g, sums.b, sums.w, sums.hits, sums.seen}) std::fill(sum, sum + vectors, none);
   const Float r0(*m.r), g0(*m.g), b0(*m.b);
   for (std::size_t i = 0; i < taps.count; i += kLanes)
     for (std::size_t v = 0; v < vectors; ++v) {
       const std::size_t at = i + v * lanes;
       const wide::Int offset = wide::load(taps.offset + at);
       const Float depth = wide::gather(m.depth, offset), weight = wide::load(taps.weight + at);
-      sums.hits[v] = sums.hits[v] + select(depth < nowhere, weight, none);
       const Float expected = Float(s.depth) + Float(s.slope) * wide::load(taps.along + at);
-      const Mask alike = abs(depth - expected) <= Float(s.tolerance);
+      const Mask opaque = depth < none, hit = depth < Float(kNoDepth) && !opaque;
+      sums.hits[v] = sums.hits[v] + select(hit, weight, none);
+      sums.seen[v] = sums.seen[v] + select(opaque && Float(-1.0f) - depth < expected, none, weight);
+      const Mask alike = hit && abs(depth - expected) <= Float(s.tolerance);
       if (!wide::any(alike)) continue;
       const Float r = wide::gather(m.r, offset), g = wide::gather(m.g, offset), b = wide::gather(m.b, offset);
       Float w = select(alike, weight, none);
@@ -72,7 +69,7 @@ TapSums Sum(const ReconnectTaps& taps, const ReconnectPixels& m, const Reconnect
       sums.b[v] = sums.b[v] + b * w, sums.w[v] = sums.w[v] + w;
     }
   return {{total(sums.r, vectors), total(sums.g, vectors), total(sums.b, vectors), total(sums.w, vectors)},
-          total(sums.hits, vectors)};
+          total(sums.hits, vectors), total(sums.seen, vectors)};
 }
 
 TapSums SumTaps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand) {
@@ -91,12 +88,6 @@ HWY_EXPORT(SumTaps);
 
 TapSums sum_taps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand) {
   return HWY_DYNAMIC_DISPATCH(SumTaps)(taps, middle, strand);
-}
-
-float sum_lanes(std::span<const float> weights) {
-  std::array<float, ReconnectTaps::kLanes> parts{};
-  for (std::size_t i = 0; i < weights.size(); ++i) parts[i % ReconnectTaps::kLanes] += weights[i];
-  return HWY_NAMESPACE::sum_parts(parts.data());
 }
 
 }  // namespace pelage

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace pelage {
 
@@ -16,16 +15,15 @@ struct ReconnectTaps {
   const std::int32_t* offset;  ///< in pixels of the padded picture
   const float* along;          ///< d∥, pixels: along the strand, to the right or straight down
   const float* weight;         ///< spatial term of Lipp 2026, eq. 10
-  float total;                 ///< sum_lanes() of the weights
 };
-
-/// The sum in kLanes parts, as sum_taps() makes its own; weights.size() is a multiple of kLanes.
-float sum_lanes(std::span<const float> weights);
 
 inline constexpr float kNoDepth = 1e30f;  ///< of pixels without a hit: no neighbor is as deep
 
-/// Where the pixel in the middle stands in the layers of a padded picture: depth that neighbors are compared by, kNoDepth where
-/// the center is not hit, and color.
+/// Of pixels without a hit in which the opaque scene stands at `share` of the hair's depth range, 0…1: below 0.
+constexpr float opaque_tap(float share) { return -1 - share; }
+
+/// Where the pixel in the middle stands in the layers of a padded picture: depth that neighbors are compared by, 0…1; kNoDepth or
+/// opaque_tap() where the center is not hit; and color.
 struct ReconnectPixels {
   const float *depth, *r, *g, *b;
 };
@@ -39,6 +37,7 @@ struct ReconnectStrand {
 struct TapSums {
   Vec4 alike;  ///< Σ w·(r, g, b, 1) over the neighbors that count: eq. 10
   float hits;  ///< Σ of the spatial terms of neighbors whose centers are hit, whatever their depth
+  float seen;  ///< that of all in which the opaque scene does not hide the strand; the same as hits where all are hit
 };
 
 /// e^−x of the color's term is 1/(1 + x + x²/2 + x³/6), too large by 0.028 at most, at x = 3. Sums are made in kLanes parts, so

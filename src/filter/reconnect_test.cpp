@@ -263,6 +263,25 @@ TEST(Reconnect, DenseHairIsOpaque) {
   for (const Vec4 p : canvas.filter().color) EXPECT_EQ(p.w, 1);
 }
 
+// Hair goes on behind what hides it, and ends before what stands behind it.
+TEST(Reconnect, KnowsWhatTheOpaqueSceneHides) {
+  for (const float opaque : {0.1f, 0.9f}) {
+    Canvas canvas(32, 16);
+    canvas.buffer.opaque.resize(32 * 16), canvas.buffer.opaque.fill(2);
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 32; ++x)
+        if (x < 16) canvas.put(x, y, 0.5f, {1, 1, 0}, true);
+        else canvas.buffer.opaque[static_cast<std::size_t>(y * 32 + x)] = opaque;
+    const HairPicture picture = canvas.filter();
+    for (int y = 0; y < 16; ++y) {
+      EXPECT_EQ(at(picture, 8, y).w, 1);
+      EXPECT_EQ(at(picture, 16, y).w, 0);
+      const float edge = at(picture, 15, y).w;
+      EXPECT_TRUE(opaque < 0.5f ? edge == 1 : edge > 0.5f && edge < 0.9f) << opaque << ": " << edge;
+    }
+  }
+}
+
 // Strands that come toward the camera are followed by the depth that they should have.
 TEST(Reconnect, FollowsAStrandInDepth) {
   Canvas canvas(64, 8);

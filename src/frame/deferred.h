@@ -106,6 +106,9 @@ struct DeferredBuffer {
   DepthRange range;
   Buffer<PixelKey> center;        ///< [h·w] a strand's band covers the pixel's center
   Buffer<PixelKey> conservative;  ///< [h·w] a strand touches the pixel, or covers its center
+  /// [h·w] with the conservative layer and an opaque scene: how deep that is where the center shows no strand, as a share of the
+  /// range from its near end on, 0…1; above 1: there is none, or a strand is shown.
+  Buffer<float> opaque;
   Buffer<PixelKey> sample_keys;   ///< [h·w·samples]
   Buffer<float> coverage;         ///< [h·w] share of the pixel that strands cover, 0…1: raster/coverage.h
 };

@@ -132,6 +132,19 @@ void clear_keys(Buffer<PixelKey>& keys, std::size_t samples, const Buffer<float>
   });
 }
 
+/// DeferredBuffer::opaque, from keys that are not finished yet.
+Buffer<float> opaque_shares(const Buffer<PixelKey>& keys) {
+  constexpr float kNone = 2;
+  Buffer<float> shares(keys.size());
+  parallel_for(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool none = deferred::is_strand(keys[i]) || keys[i] == kEmptyPixel;
+      shares[i] = none ? kNone : static_cast<float>(deferred::depth_level(keys[i])) * (1 / kernel::kRasterDepthLevels);
+    }
+  });
+  return shares;
+}
+
 /// Makes pixels that no strand won empty again.
 void finish_keys(Buffer<PixelKey>& keys) {
   parallel_for(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -151,6 +164,7 @@ class TargetLayers {
     for (const DeferredGroom& groom : grooms) jobs_.push_back(make_project_job(out_.view, scene.grooms[groom.groom]));
     out_.samples = std::max(1, layers.samples);
     out_.center.release(), out_.conservative.release(), out_.sample_keys.release(), out_.coverage.release();
+    out_.opaque.release();
     if (layers.center) clear(out_.center, 1);
     if (layers.conservative) clear(out_.conservative, 1);
     if (layers.samples > 0) clear(out_.sample_keys, static_cast<std::size_t>(out_.samples));
@@ -173,7 +187,9 @@ class TargetLayers {
 
   /// Makes pixels that no strand won empty again.
   void finish() {
-    if (!target_.opaque_depth.empty())
+    const bool opaque = !target_.opaque_depth.empty();
+    if (opaque && layers_.conservative) out_.opaque = opaque_shares(out_.center);
+    if (opaque)
       for (Buffer<PixelKey>* keys : {&out_.center, &out_.conservative, &out_.sample_keys}) finish_keys(*keys);
     if (coverage_) out_.coverage = coverage_->finish();
   }
