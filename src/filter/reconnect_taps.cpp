@@ -69,7 +69,8 @@ TapSums Sum(const ReconnectTaps& taps, const ReconnectPixels& m, const Reconnect
       sums.b[v] = sums.b[v] + b * w, sums.w[v] = sums.w[v] + w;
     }
   return {{total(sums.r, vectors), total(sums.g, vectors), total(sums.b, vectors), total(sums.w, vectors)},
-          total(sums.hits, vectors), total(sums.seen, vectors)};
+          total(sums.hits, vectors),
+          total(sums.seen, vectors)};
 }
 
 TapSums SumTaps(const ReconnectTaps& taps, const ReconnectPixels& middle, const ReconnectStrand& strand) {

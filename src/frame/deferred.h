@@ -109,8 +109,8 @@ struct DeferredBuffer {
   /// [h·w] with the conservative layer and an opaque scene: how deep that is where the center shows no strand, as a share of the
   /// range from its near end on, 0…1; above 1: there is none, or a strand is shown.
   Buffer<float> opaque;
-  Buffer<PixelKey> sample_keys;   ///< [h·w·samples]
-  Buffer<float> coverage;         ///< [h·w] share of the pixel that strands cover, 0…1: raster/coverage.h
+  Buffer<PixelKey> sample_keys;  ///< [h·w·samples]
+  Buffer<float> coverage;        ///< [h·w] share of the pixel that strands cover, 0…1: raster/coverage.h
 };
 
 /// The hair of the part of the picture that a DeferredBuffer shows, without its background.
