@@ -272,7 +272,7 @@ def before(shop, style, strands, pixels, size, **keys):
     width, height = (int(n) for n in size.split("x"))
     return {"camera": {"eye": [c + away * b for c, b in zip(center, back)], "target": center, "fov": fov}, "lights": LIGHTS,
             "environment": {"radiance": [0.32, 0.34, 0.38]}, "meshes": [{"shape": "mannequin"}],
-            "grooms": [{"file": f"../{file}", "lod_lambda": 3, **keys}],
+            "grooms": [{"file": f"../{file}", **keys}],
             "settings": {"width": width, "height": height, "method": "swr", "opacity_map_size": 1024 if strands > 1000 else 64, "exposure": 0.5, "background": [0.12, 0.13, 0.15]}}, file
 
 

@@ -99,7 +99,7 @@ struct GroomInstance {
   std::string name;
   std::shared_ptr<const StrandSet> strands;   ///< null where expand_hair_meshes() has not been there yet
   std::shared_ptr<const HairMesh> hair_mesh;  ///< or null. Method::kSwr draws it as it is, everything else its strands
-  float lod_lambda = 3;                       ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
+  float lod_lambda = 1.4f;                    ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
   HairMaterial material;
   std::shared_ptr<const Image> color_map;    ///< of a hair mesh: linear RGB over the groom's u (x) and v (y), instead of the
                                              ///< material's color; may be null
