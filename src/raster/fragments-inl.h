@@ -30,6 +30,9 @@ struct SegmentKeys {
   HWY_INLINE PixelKey key(std::uint32_t rank, std::uint32_t id) const { return static_cast<PixelKey>(rank) << 32 | id; }
 };
 
+/// In the id of a fragment of a strand that is gone after this: it covers its pixel's center.
+inline constexpr std::uint32_t kCoversCenter = 1u << 31;
+
 /// Keys of strands that are gone after this: DeferredBuffer of frame/deferred.h. Payload is that of the nearer end.
 struct DeferredKeys {
   float near_end, levels_per_metre;
@@ -45,7 +48,8 @@ struct DeferredKeys {
     return hn::IfThenElse(hn::RebindMask(kUint, second.m), hn::Add(w.id, hn::Set(kUint, stride)), w.id);
   }
   HWY_INLINE PixelKey key(std::uint32_t rank, std::uint32_t id) const {
-    return static_cast<PixelKey>(rank | payload_high[id]) << 32 | payload_low[id];
+    const std::uint32_t point = id & ~kCoversCenter;
+    return static_cast<PixelKey>(rank | payload_high[point]) << 32 | payload_low[point];
   }
 };
 
@@ -72,52 +76,58 @@ HWY_INLINE std::uint64_t passing(const std::uint32_t* pixel, const std::uint32_t
   return bits;
 }
 
-/// Depth test and atomic minimum of everything in the buffer, which is empty afterwards.
+/// Of the vector of fragments from i on, those that are in the buffer, as bits.
+HWY_INLINE std::uint64_t used_lanes(const FragmentBuffer& f, std::size_t i) {
+  return f.count - i < hn::Lanes(kUint) ? (std::uint64_t{1} << (f.count - i)) - 1 : ~std::uint64_t{0};
+}
+
+/// Atomic minimum of the fragments from i on that `bits` name.
 template <class Keys>
-HWY_NOINLINE void flush_fragments(const Keys& make, FragmentBuffer& f, PixelKey* keys) {
+HWY_INLINE void enter_lanes(const Keys& make, const FragmentBuffer& f, std::size_t i, std::uint64_t bits, PixelKey* keys) {
+  for (; bits != 0; bits &= bits - 1) {
+    const std::size_t l = i + static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+    atomic_min(keys[f.pixel[l]], make.key(f.rank[l], f.id[l]));
+  }
+}
+
+/// enter(i) for each vector of fragments; prefetch(i) for each fragment long before. Empties the buffer.
+template <class Prefetch, class Enter>
+HWY_INLINE void flush(FragmentBuffer& f, const Prefetch& prefetch, const Enter& enter) {
   const std::size_t lanes = hn::Lanes(kUint), count = f.count, ahead = FragmentBuffer::kPadding - lanes;
   std::fill(&f.pixel[count], &f.pixel[count] + FragmentBuffer::kPadding, 0u);
-  for (std::size_t i = 0; i < count && i < ahead; ++i) hwy::Prefetch(keys + f.pixel[i]);
+  for (std::size_t i = 0; i < count && i < ahead; ++i) prefetch(i);
   for (std::size_t i = 0; i < count; i += lanes) {
-    for (std::size_t l = 0; l < lanes; ++l) hwy::Prefetch(keys + f.pixel[i + ahead + l]);
-    const std::uint64_t used = count - i < lanes ? (std::uint64_t{1} << (count - i)) - 1 : ~std::uint64_t{0};
-    for (std::uint64_t bits = passing(&f.pixel[i], &f.rank[i], keys) & used; bits != 0; bits &= bits - 1) {
-      const std::size_t l = i + static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      atomic_min(keys[f.pixel[l]], make.key(f.rank[l], f.id[l]));
-    }
+    for (std::size_t l = 0; l < lanes; ++l) prefetch(i + ahead + l);
+    enter(i);
   }
   f.count = 0;
 }
 
-/// Both layers of deferred rasterization: fragments touch their pixels, those with kCoversCenter in their id cover the center, too.
-inline constexpr std::uint32_t kCoversCenter = 1u << 31;
-inline constexpr std::uint32_t kFragmentId = kCoversCenter - 1;
-
+/// Depth test and atomic minimum of everything in the buffer, which is empty afterwards.
 template <class Keys>
-HWY_NOINLINE void flush_both(const Keys& make, FragmentBuffer& f, PixelKey* center, PixelKey* conservative) {
-  const std::size_t lanes = hn::Lanes(kUint), count = f.count, ahead = FragmentBuffer::kPadding - lanes;
-  std::fill(&f.pixel[count], &f.pixel[count] + FragmentBuffer::kPadding, 0u);
-  const auto prefetch = [&](std::size_t i) {
-    hwy::Prefetch(conservative + f.pixel[i]);
-    hwy::Prefetch((f.id[i] & kCoversCenter ? center : conservative) + f.pixel[i]);
-  };
-  for (std::size_t i = 0; i < count && i < ahead; ++i) prefetch(i);
-  const auto enter = [&](std::size_t i, std::uint64_t bits, PixelKey* keys) {
-    for (; bits != 0; bits &= bits - 1) {
-      const std::size_t l = i + static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      atomic_min(keys[f.pixel[l]], make.key(f.rank[l], f.id[l] & kFragmentId));
-    }
-  };
-  for (std::size_t i = 0; i < count; i += lanes) {
-    for (std::size_t l = 0; l < lanes; ++l) prefetch(i + ahead + l);
-    const std::uint64_t used = count - i < lanes ? (std::uint64_t{1} << (count - i)) - 1 : ~std::uint64_t{0};
-    enter(i, passing(&f.pixel[i], &f.rank[i], conservative) & used, conservative);
-    std::uint64_t covers = 0;
-    const auto flags = hn::BitCast(kInt, hn::LoadU(kUint, &f.id[i]));  // kCoversCenter is their sign
-    hn::StoreMaskBits(kInt, hn::Lt(flags, hn::Zero(kInt)), reinterpret_cast<std::uint8_t*>(&covers));
-    enter(i, covers & used, center);  // few of a thin strand's
-  }
-  f.count = 0;
+HWY_NOINLINE void flush_fragments(const Keys& make, FragmentBuffer& f, PixelKey* keys) {
+  flush(
+      f, [&](std::size_t i) { hwy::Prefetch(keys + f.pixel[i]); },
+      [&](std::size_t i) { enter_lanes(make, f, i, passing(&f.pixel[i], &f.rank[i], keys) & used_lanes(f, i), keys); });
+}
+
+/// The same for both layers of deferred rasterization: all fragments touch their pixels, and those with kCoversCenter in their id
+/// cover the center, too.
+HWY_NOINLINE inline void flush_both(const DeferredKeys& make, FragmentBuffer& f, PixelKey* center, PixelKey* conservative) {
+  flush(
+      f,
+      [&](std::size_t i) {
+        hwy::Prefetch(conservative + f.pixel[i]);
+        hwy::Prefetch((f.id[i] & kCoversCenter ? center : conservative) + f.pixel[i]);
+      },
+      [&](std::size_t i) {
+        const std::uint64_t used = used_lanes(f, i);
+        enter_lanes(make, f, i, passing(&f.pixel[i], &f.rank[i], conservative) & used, conservative);
+        std::uint64_t covers = 0;
+        const auto flags = hn::BitCast(kInt, hn::LoadU(kUint, &f.id[i]));  // kCoversCenter is their sign
+        hn::StoreMaskBits(kInt, hn::Lt(flags, hn::Zero(kInt)), reinterpret_cast<std::uint8_t*>(&covers));
+        enter_lanes(make, f, i, covers & used, center);  // few of a thin strand's
+      });
 }
 
 /// Whether another vector of fragments may be too many.
