@@ -330,21 +330,28 @@ Workload look_workload(const Shot& shot, bool radiance) {
           }};
 }
 
+/// A dolly away from the hair. The slow one moves so little from frame to frame that whatever pops stands out.
+struct Path {
+  const char* name;
+  float from, to;  // pixels of height
+};
+constexpr Path kPaths[] = {{"dolly", 600, 60}, {"slow_dolly", 120, 105}};
+
 /// PSNR between neighboring frames of a dolly, with the filter, at full detail and with level of detail.
 struct Dolly {
   std::vector<double> psnr[2];
 };
 
-const Dolly& dolly_of(HairMeshStyle style) {
+const Dolly& dolly_of(const Path& path, HairMeshStyle style) {
   constexpr int kFrames = 60;
-  constexpr float kFrom = 600, kTo = 60;  // pixels of height
-  static std::map<HairMeshStyle, Dolly> kept;
-  Dolly& dolly = kept[style];
+  static std::map<std::pair<std::string, HairMeshStyle>, Dolly> kept;
+  Dolly& dolly = kept[{path.name, style}];
   if (!dolly.psnr[0].empty()) return dolly;
-  const Input in({"dolly", style, kFrom});
+  const Input in({path.name, style, path.from});
   Picture before[2];
   for (int i = 0; i < kFrames; ++i) {
-    const Scene there = scene_of({"dolly", style, kFrom * std::pow(kTo / kFrom, static_cast<float>(i) / (kFrames - 1))});
+    const float pixels = path.from * std::pow(path.to / path.from, static_cast<float>(i) / (kFrames - 1));
+    const Scene there = scene_of({path.name, style, pixels});
     const CameraView view = make_camera_view(there.camera, there.settings.width, there.settings.height);
     for (const bool lod : {false, true}) {
       const RenderSettings s = settings_of(in, kKinds[1], lod);
@@ -432,14 +439,16 @@ void add_swr_cases(Suite& suite) {
     suite.ratios.push_back({at + "stereo_over_single.lod", {at + "stereo.lod"}, {at + "filter.lod"}});
     suite.ratios.push_back({at + "prepass_share", {at + "prepass"}, {at + "filter.lod"}});
   }
-  for (const std::string style : {"long-wavy", "curls"})
-    for (const std::string metric : {"psnr_full", "psnr_lod", "least_gain"})
-      suite.cases.push_back(
-          {"swr.dolly." + style, metric, "dB", [style, metric] {
-             return Workload{
-                 .check = [] { return std::string(); },
-                 .measure = [style, metric] { return dolly_value(dolly_of(hair_mesh_style_from_name(style)), metric); }};
-           }});
+  for (const Path& path : kPaths)
+    for (const std::string style : {"long-wavy", "curls"})
+      for (const std::string metric : {"psnr_full", "psnr_lod", "least_gain"})
+        suite.cases.push_back(
+            {"swr." + std::string(path.name) + "." + style, metric, "dB", [path, style, metric] {
+               return Workload{
+                   .check = [] { return std::string(); },
+                   .measure = [path, style,
+                               metric] { return dolly_value(dolly_of(path, hair_mesh_style_from_name(style)), metric); }};
+             }});
   for (const std::string& style : hair_mesh_style_names())
     for (const int pixels : kLookHeights) {
       const Shot shot{"look", hair_mesh_style_from_name(style), static_cast<float>(pixels)};

@@ -71,6 +71,19 @@ TEST(BundleLod, AWaveKeepsItsPoints) {
   for (const BundleDraw& b : select(scene).bundles) EXPECT_EQ(b.points, 33u);  // 27 → 2⁵ + 1
 }
 
+// What has to stay thin beside a braid is a strand beside its lock.
+TEST(BundleLod, LocksOfABraidKeepMoreStrands) {
+  std::uint64_t strands[2];
+  for (const bool braided : {false, true}) {
+    const auto style =
+        braided ? std::vector<StyleOperator>{{StyleOperator::Kind::kBraid, 0.5f, 4, 0, 0}} : std::vector<StyleOperator>{};
+    Scene scene = hair_mesh_scene(small_hair_mesh(style, 2, 5, 4000));
+    scene.camera.eye = {0, 0.1f, 100};
+    strands[braided] = select(scene).strands;
+  }
+  EXPECT_NEAR(static_cast<double>(strands[1]), 2.0 * static_cast<double>(strands[0]), 8);
+}
+
 TEST(BundleLod, WholeWithoutIt) {
   Scene scene = hair_mesh_scene(small_hair_mesh(every_operator()));
   scene.camera.eye = {0, 0, 30};
@@ -82,7 +95,7 @@ TEST(BundleLod, WholeWithoutIt) {
 
 // Farther away there are fewer strands and points, of the same width in sum.
 TEST(BundleLod, FallsWithDistance) {
-  Scene scene = hair_mesh_scene(small_hair_mesh(every_operator(), 2, 5, 4000));
+  Scene scene = hair_mesh_scene(small_hair_mesh({}, 2, 5, 4000));
   std::uint64_t before = ~std::uint64_t{0};
   for (const float distance : {0.5f, 2.f, 8.f, 32.f}) {
     scene.camera.eye = {0, 0.1f, distance};

@@ -44,14 +44,33 @@ TEST(HairMesh, AShareIsAPrefix) {
     for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(some.points[s * 9 + i], full.points[some.strand_id[s] * 9 + i]);
 }
 
-TEST(HairMesh, ItsBoxHoldsEveryPoint) {
-  std::vector<std::vector<StyleOperator>> styles{{}, every_operator(), {{Kind::kLength, 2, 0, 0, 0.2f}}};
-  for (const auto& style : styles) {
-    const HairMesh mesh = small_hair_mesh(style);
-    const Bounds box = bounds(mesh), points = bounds(expand(mesh, {.points = 127}));
-    EXPECT_TRUE(box.lower.x <= points.lower.x && box.lower.y <= points.lower.y && box.lower.z <= points.lower.z);
-    EXPECT_TRUE(box.upper.x >= points.upper.x && box.upper.y >= points.upper.y && box.upper.z >= points.upper.z);
+void expect_in_box(const HairMesh& mesh) {
+  const Bounds box = bounds(mesh);
+  for (const std::uint32_t count : {2u, 9u, 17u, 127u}) {
+    const Bounds points = bounds(expand(mesh, {.points = count}));
+    EXPECT_TRUE(box.lower.x <= points.lower.x && box.lower.y <= points.lower.y && box.lower.z <= points.lower.z) << count;
+    EXPECT_TRUE(box.upper.x >= points.upper.x && box.upper.y >= points.upper.y && box.upper.z >= points.upper.z) << count;
     EXPECT_LT(length(box.extent()), 2.5f * length(points.extent()));
+  }
+}
+
+TEST(HairMesh, ItsBoxHoldsEveryPoint) {
+  const std::vector<StyleOperator> longer{{Kind::kLength, 2, 0, 0, 0.2f}}, turned{{Kind::kCurl, 0.03f, 3, 0, 0}};
+  for (const auto& style : {{}, every_operator(), longer, turned}) {
+    SCOPED_TRACE(style.empty() ? "plain" : style_operator_names()[static_cast<std::size_t>(style[0].kind)]);
+    expect_in_box(small_hair_mesh(style));
+  }
+}
+
+// Points stand outside of bends: those of the cage, and those of a braid's locks.
+TEST(HairMesh, ItsBoxHoldsTheBends) {
+  for (const bool braided : {false, true}) {
+    HairMesh mesh = small_hair_mesh({});
+    if (braided) mesh.styles[0] = {{Kind::kBraid, 1, 3, 0, 0}};
+    for (std::size_t c = 0; !braided && c + 1 < mesh.column_offsets.size(); ++c)
+      for (std::uint32_t i = mesh.column_offsets[c]; i < mesh.column_offsets[c + 1]; ++i)
+        mesh.positions[i].x += (i - mesh.column_offsets[c]) % 2 == 0 ? 0.05f : -0.05f;
+    expect_in_box(mesh);
   }
 }
 

@@ -99,38 +99,23 @@ PELAGE_LANES_FN Vec2 strand_across_at(const StrandStyle& style, const StrandTrai
   return uv;
 }
 
-// How much farther waves swing for what chords between points cut off, by operator.
-struct ChordGains {
-  Float wave, curl, noise, frizz;
-};
-
-// step: of w, from point to point.
-PELAGE_LANES_FN ChordGains chord_gains(const StrandStyle& style, Float step) {
-  const auto gain = [&](const StyleOperator* o, float turns) {
-    return o ? style_chord_gain(step * Float(o->frequency * turns)) : Float(1.0f);
-  };
-  return {gain(style.wave, 1), gain(style.curl, 1), gain(style.noise, kStyleNoiseTurns), gain(style.frizz, 1)};
-}
-
 // Shift off the base strand, along its normal and its binormal, metres.
-PELAGE_LANES_FN Vec2 strand_shift(const StrandStyle& style, const StrandTraits& t, const ChordGains& gains, std::size_t l,
-                                  Float w) {
+PELAGE_LANES_FN Vec2 strand_shift(const StrandStyle& style, const StrandTraits& t, std::size_t l, Float w) {
   Vec2 shift(Float(0.0f), Float(0.0f));
   if (const StyleOperator* o = style.wave) {
-    const Float swing =
-        gains.wave * style_onset(w, Float(o->start)) * style_wave(w, Float(o->frequency), load(&t.wave_phase[l]));
+    const Float swing = style_onset(w, Float(o->start)) * style_wave(w, Float(o->frequency), load(&t.wave_phase[l]));
     shift = shift + Vec2(load(&t.wave_x[l]), load(&t.wave_y[l])) * swing;
   }
   if (const StyleOperator* o = style.curl)
-    shift = shift + style_curl(w, Float(o->frequency), load(&t.curl_phase[l])) *
-                        (gains.curl * Float(o->amount) * style_onset(w, Float(o->start)));
+    shift = shift +
+            style_curl(w, Float(o->frequency), load(&t.curl_phase[l])) * (Float(o->amount) * style_onset(w, Float(o->start)));
   if (const StyleOperator* o = style.noise)
     shift =
         shift + style_noise(Vec3(load(&t.groom_u[l]), load(&t.groom_v[l]), w), Float(o->frequency), load(&t.noise_phase[l])) *
-                    (gains.noise * Float(o->amount) * style_onset(w, Float(o->start)));
+                    (Float(o->amount) * style_onset(w, Float(o->start)));
   if (const StyleOperator* o = style.frizz)
     shift = shift + style_frizz(w, Float(o->frequency), Vec3(load(&t.frizz_a[l]), load(&t.frizz_b[l]), load(&t.frizz_c[l]))) *
-                        (gains.frizz * load(&t.frizz[l]) * style_onset(w, Float(o->start)));
+                        (load(&t.frizz[l]) * style_onset(w, Float(o->start)));
   return shift;
 }
 
@@ -140,7 +125,6 @@ PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& st
   const float spans = static_cast<float>(cage.spans), last = spans - 1;
   const auto span_at = [&](float w) { return std::min(std::floor(w * spans), last); };
   const Float length = load(&traits.length[l]), root_width(cage.mesh->width);
-  const ChordGains gains = chord_gains(style, length * Float(1.0f / static_cast<float>(g.points - 1)));
   Float weight[4];
   strand_weights(load(&traits.u[l]), load(&traits.v[l]), weight);
   StrandCubic cubic;
@@ -162,7 +146,7 @@ PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& st
       const Vec3 along = v_normalize(curve_cubic_derivative(cubic.c[1], cubic.c[2], cubic.c[3], min(at.t, Float(1.0f))));
       const Vec3 side = strand_normal(cage, at);
       const Vec3 normal = v_normalize(side - along * dot(side, along)), binormal = cross(along, normal);
-      const Vec2 shift = strand_shift(style, traits, gains, l, w);
+      const Vec2 shift = strand_shift(style, traits, l, w);
       p = p + normal * shift.x + binormal * shift.y;
     }
     Float width = root_width;
@@ -174,17 +158,25 @@ PELAGE_LANES_FN void strand_points(const BundleCage& cage, const StrandStyle& st
   }
 }
 
-// Second pass: tangents of the styled strands, from the points before and behind.
-PELAGE_LANES_FN void strand_tangents(std::size_t l, StrandGroup& g) {
-  const auto point = [&](std::size_t i) {
+// Second pass: points move out of their bends, by what chords between them cut off; and tangents, from the points before and behind.
+PELAGE_LANES_FN void strand_chords(std::size_t l, StrandGroup& g) {
+  const auto styled = [&](std::size_t i) {
     const std::size_t at = i * StrandGroup::kLanes + l;
     return Vec3(load(&g.x[at]), load(&g.y[at]), load(&g.z[at]));
   };
-  Vec3 before = point(0), here = before;
+  Vec3 here = styled(0), before = here, styled_here = here, styled_behind = styled(1);
   for (std::size_t i = 0; i < g.points; ++i) {
-    const Vec3 behind = i + 1 < g.points ? point(i + 1) : here;
+    Vec3 behind = here;
+    if (i + 2 < g.points) {
+      const Vec3 beyond = styled(i + 2);
+      behind = style_chord_point(styled_here, styled_behind, beyond);
+      styled_here = styled_behind, styled_behind = beyond;
+    } else if (i + 2 == g.points) {
+      behind = styled_behind;
+    }
     const Vec3 tangent = v_normalize(behind - before);
     const std::size_t to = i * StrandGroup::kLanes + l;
+    store(here.x, &g.x[to]), store(here.y, &g.y[to]), store(here.z, &g.z[to]);
     store(tangent.x, &g.tx[to]), store(tangent.y, &g.ty[to]), store(tangent.z, &g.tz[to]);
     before = here, here = behind;
   }
@@ -195,6 +187,6 @@ PELAGE_LANES_FN void strand_group(const BundleCage& cage, const StrandTraits& tr
   const auto [shortest, longest] = std::minmax_element(traits.length.begin(), traits.length.end());
   for (std::size_t l = 0; l < StrandGroup::kLanes; l += static_cast<std::size_t>(lanes())) {
     strand_points(cage, style, traits, l, *shortest, *longest, g);
-    strand_tangents(l, g);
+    strand_chords(l, g);
   }
 }

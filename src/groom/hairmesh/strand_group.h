@@ -11,7 +11,8 @@
 
 namespace pelage {
 
-/// Up to kLanes strands of one bundle as polylines of equally many points. Point i of strand l stands at i·kLanes + l; lanes
+/// Up to kLanes strands of one bundle as polylines of equally many points, which lie as near to the strand as so few points allow:
+/// on both sides of its bends. Point i of strand l stands at i·kLanes + l; lanes
 /// from `strands` on repeat the first one.
 struct StrandGroup {
   static constexpr std::size_t kLanes = 16;

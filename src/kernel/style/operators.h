@@ -4,8 +4,6 @@
 
 // Waves of noise along a strand, as a share of its frequency: the mean of its three.
 const float kStyleNoiseTurns = 0.7f;
-// Fewer points a turn do not show a wave.
-const float kStylePointsPerTurn = 4.0f;
 
 // Share of the strand over which an operator gains its full strength.
 const float kStyleOnset = 0.25f;
@@ -23,12 +21,11 @@ PELAGE_FN Float style_growth(Float w, Float start) {
 // Radians of a number of turns, without those that are whole: large arguments would cost digits.
 PELAGE_FN Float style_angle(Float turns) { return (turns - floor(turns)) * Float(6.283185307179586f); }
 
-// By how much a wave has to swing farther for the polyline through points that are `turns` of it apart to have its amplitude: that
-// polyline's part of the wave's own frequency is sinc² of it. Fewer than kStylePointsPerTurn are taken for as many.
-PELAGE_FN Float style_chord_gain(Float turns) {
-  Float half = v_clamp(turns, Float(1.0e-3f), Float(1.0f / kStylePointsPerTurn)) * Float(3.14159265358979f);
-  Float share = m_sin(half) / half;
-  return Float(1.0f) / (share * share);
+// Where a point of a curve has to stand for the polyline through such points to lie on both sides of it: moved against the second
+// difference by what chords lie inside of it on average, h² |p″| / 12 for points h apart. A wave keeps its amplitude: that is the
+// start of 1 / sinc².
+PELAGE_FN Vec3 style_chord_point(Vec3 before, Vec3 here, Vec3 behind) {
+  return here - (before + behind - here * Float(2.0f)) * Float(1.0f / 12.0f);
 }
 
 PELAGE_FN Float style_wave(Float w, Float frequency, Float phase) {
