@@ -9,13 +9,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/k_means.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "core/shared_progress.h"
 #include "groom/hairmesh/fit_bundle.h"
 #include "groom/hairmesh/fit_report.h"
 #include "groom/hairmesh/fit_style.h"
-#include "groom/hairmesh/k_means.h"
 
 namespace pelage {
 namespace {

@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "groom/hairmesh/cage.h"
-#include "groom/hairmesh/k_means.h"
 #include "groom/hairmesh/layer_spline.h"
 #include "kit/test_hair_mesh.h"
 
@@ -59,25 +58,6 @@ TEST(LayerSpline, ProjectionGivesItsVerticesBack) {
     spline.project(points.data(), back.data());
     for (std::uint32_t k = 0; k < layers; ++k) EXPECT_LT(length(back[k] - vertices[k]), 1e-4f) << layers << " " << k;
   }
-}
-
-TEST(KMeans, FindsHeapsThatStandApart) {
-  Features f;
-  f.dimension = 2;
-  for (int i = 0; i < 300; ++i) {
-    const auto heap = static_cast<float>(i % 3), off = 0.01f * static_cast<float>(i % 17);
-    f.values.insert(f.values.end(), {10 * heap + off, heap * heap - off});
-  }
-  const std::vector<std::uint32_t> label = k_means(f, 3, 5);
-  for (std::size_t i = 3; i < label.size(); ++i) EXPECT_EQ(label[i], label[i % 3]);
-  EXPECT_NE(label[0], label[1]);
-  EXPECT_NE(label[1], label[2]);
-  EXPECT_NE(label[0], label[2]);
-}
-
-TEST(KMeans, HasNoMoreClustersThanItemsDiffer) {
-  const Features same{1, {2, 2, 2, 2}};
-  EXPECT_THAT(k_means(same, 3, 1), ::testing::Each(0u));
 }
 
 // One bundle, whose places are not known to the fit.

@@ -1,58 +1,13 @@
 #include "groom/hairmesh/fit_strands.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/parallel.h"
 #include "core/shared_progress.h"
-#include "frame/curve_basis.h"
-#include "kernel/scalar.h"
+#include "frame/strand_path.h"
 
 namespace pelage {
 namespace {
-
-struct Knot {
-  Vec3 p;
-  float width;
-  double s;  // arc length from the root
-};
-
-/// The curve of strand `s` by knots on it: a few a span.
-void knots_of(const StrandSet& set, std::size_t s, std::vector<Knot>& knots) {
-  const std::uint32_t first = set.offsets[s], n = set.offsets[s + 1] - first;
-  const bool bezier = set.basis == CurveBasis::kBezier;
-  const std::uint32_t pieces = set.basis == CurveBasis::kLinear ? 1 : 4, spans = bezier ? (n - 1) / 3 : n - 1;
-  // StrandSet: phantom points continue the ends.
-  const auto point = [&](std::int64_t i) {
-    if (i < 0) return set.points[first] * 2.f - set.points[first + 1];
-    if (i >= n) return set.points[first + n - 1] * 2.f - set.points[first + n - 2];
-    return set.points[first + static_cast<std::size_t>(i)];
-  };
-  knots.clear();
-  for (std::uint32_t span = 0; span < spans; ++span)
-    for (std::uint32_t k = span == 0 ? 0 : 1; k <= pieces; ++k) {
-      const float t = static_cast<float>(k) / static_cast<float>(pieces);
-      const std::int64_t from = bezier ? std::int64_t{span} * 3 : std::int64_t{span} - 1;
-      const std::uint32_t low = first + (bezier ? span * 3 : span), high = low + (bezier ? 3 : 1);
-      Knot knot{
-          kernel::curve_combine(basis_weights(set.basis, t), point(from), point(from + 1), point(from + 2), point(from + 3)),
-          set.width(low) + (set.width(high) - set.width(low)) * t, 0};
-      if (!knots.empty()) knot.s = knots.back().s + static_cast<double>(length(knot.p - knots.back().p));
-      knots.push_back(knot);
-    }
-}
-
-/// Calls put(i, knots around, share between them) for `count` places uniform in arc length.
-template <class Put>
-void walk(const std::vector<Knot>& knots, std::size_t count, const Put& put) {
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double s = knots.back().s * static_cast<double>(i) / static_cast<double>(count - 1);
-    while (k + 2 < knots.size() && knots[k + 1].s < s) ++k;
-    const double step = knots[k + 1].s - knots[k].s;
-    put(i, knots[k], knots[k + 1], static_cast<float>(step > 0 ? std::clamp((s - knots[k].s) / step, 0., 1.) : 0.));
-  }
-}
 
 void find_places(const StrandSet& set, const std::vector<std::size_t>& source, FitStrands& f) {
   const auto in_unit = [](Vec2 p) { return p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1; };
@@ -83,23 +38,24 @@ FitStrands sample_strands(const StrandSet& set, std::uint32_t most, const Progre
   FitStrands f;
   std::vector<std::size_t> source;
   const std::size_t n = set.strand_count(), count = std::min<std::size_t>(n, most);
-  std::vector<Knot> knots;
+  StrandPath probe;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t s = i * n / count;
-    knots_of(set, s, knots);
-    if (knots.size() < 2 || !(knots.back().s > 0)) continue;
-    source.push_back(s), f.lengths.push_back(static_cast<float>(knots.back().s));
+    probe.assign(set, s);
+    if (probe.knots().size() < 2 || !(probe.length() > 0)) continue;
+    source.push_back(s), f.lengths.push_back(static_cast<float>(probe.length()));
   }
   f.points.resize(f.count() * FitStrands::kPoints), f.widths.resize(f.count() * FitStrands::kWidths);
   SharedProgress shared(progress, "sample strands", std::max<std::size_t>(1, f.count()));
   parallel_for(f.count(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<Knot> path;
+    StrandPath path;
+    using Knot = StrandPath::Knot;
     for (std::size_t s = begin; s < end; ++s) {
-      knots_of(set, source[s], path);
-      walk(path, FitStrands::kPoints, [&](std::size_t i, const Knot& a, const Knot& b, float t) {
+      path.assign(set, source[s]);
+      path.walk(FitStrands::kPoints, [&](std::size_t i, const Knot& a, const Knot& b, float t) {
         f.points[s * FitStrands::kPoints + i] = lerp(a.p, b.p, t);
       });
-      walk(path, FitStrands::kWidths, [&](std::size_t i, const Knot& a, const Knot& b, float t) {
+      path.walk(FitStrands::kWidths, [&](std::size_t i, const Knot& a, const Knot& b, float t) {
         f.widths[s * FitStrands::kWidths + i] = a.width + (b.width - a.width) * t;
       });
     }

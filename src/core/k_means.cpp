@@ -1,4 +1,4 @@
-#include "groom/hairmesh/k_means.h"
+#include "core/k_means.h"
 
 #include <algorithm>
 #include <limits>
@@ -25,10 +25,11 @@ std::vector<float> first_centers(const Features& f, std::uint32_t clusters, std:
   for (std::uint32_t c = 0; c < clusters; ++c) {
     centers.insert(centers.end(), f.item(chosen), f.item(chosen) + f.dimension);
     double total = 0;
-    for (std::size_t i = 0; i < f.count(); ++i) {
-      nearest[i] = std::min(nearest[i], distance2(f.item(i), f.item(chosen), f.dimension));
-      total += static_cast<double>(nearest[i]);
-    }
+    const float* last = f.item(chosen);
+    parallel_for(f.count(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) nearest[i] = std::min(nearest[i], distance2(f.item(i), last, f.dimension));
+    });
+    for (const float d : nearest) total += static_cast<double>(d);
     if (!(total > 0)) break;
     double rest = static_cast<double>(random.uniform()) * total;
     for (std::size_t i = 0; i < f.count(); ++i) {
@@ -60,6 +61,26 @@ std::vector<bool> move_centers(const Features& f, const std::vector<std::uint32_
 
 }  // namespace
 
+CenterTable::CenterTable(const float* centers, std::size_t count, std::size_t dimension)
+    : count_(count), dimension_(dimension), values_(padded_count() * dimension) {
+  for (std::size_t c = 0; c < count; ++c)
+    for (std::size_t d = 0; d < dimension; ++d)
+      values_[(c / kBlock * dimension + d) * kBlock + c % kBlock] = centers[c * dimension + d];
+}
+
+void CenterTable::distances2(const float* item, float* out) const {
+  for (std::size_t block = 0; block < padded_count(); block += kBlock) {
+    const float* value = &values_[block * dimension_];
+    float sum[kBlock] = {};
+    for (std::size_t d = 0; d < dimension_; ++d, value += kBlock)
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const float off = item[d] - value[i];
+        sum[i] += off * off;
+      }
+    std::copy(sum, sum + kBlock, out + block);
+  }
+}
+
 std::vector<std::uint32_t> k_means(const Features& f, std::uint32_t clusters, std::uint32_t seed) {
   std::vector<std::uint32_t> label(f.count());
   if (f.count() == 0) return label;
@@ -68,13 +89,14 @@ std::vector<std::uint32_t> k_means(const Features& f, std::uint32_t clusters, st
   std::vector<bool> used;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<std::uint32_t> before = label;
+    const CenterTable table(centers.data(), count, f.dimension);
     parallel_for(f.count(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<float> d2(table.padded_count());
       for (std::size_t i = begin; i < end; ++i) {
-        float least = std::numeric_limits<float>::max();
-        for (std::size_t c = 0; c < count; ++c) {
-          const float d = distance2(f.item(i), &centers[c * f.dimension], f.dimension);
-          if (d < least) least = d, label[i] = static_cast<std::uint32_t>(c);
-        }
+        table.distances2(f.item(i), d2.data());
+        const auto nearest =
+            std::min_element(d2.begin(), d2.begin() + static_cast<std::ptrdiff_t>(count));  // the first of equals
+        label[i] = static_cast<std::uint32_t>(nearest - d2.begin());
       }
     });
     used = move_centers(f, label, centers);
