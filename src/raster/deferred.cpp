@@ -18,6 +18,7 @@
 #include "groom/hairmesh/prepared.h"
 #include "groom/hairmesh/strand_group.h"
 #include "raster/coverage.h"
+#include "raster/depth_tiles.h"
 #include "raster/fragments.h"
 #include "raster/gbuffer.h"
 #include "raster/tile_locks.h"
@@ -27,6 +28,8 @@ namespace {
 
 constexpr std::size_t kGrain = 1 << 16;
 constexpr std::size_t kGroupsPerTask = 8;
+/// Parts that all groups are drawn in, nearest first; what those before hide is left out.
+constexpr std::size_t kParts = 8;
 
 /// What one thread works with; reused from task to task.
 struct Worker {
@@ -159,7 +162,7 @@ class TargetLayers {
   /// Clears them.
   TargetLayers(const Scene& scene, std::span<const DeferredGroom> grooms, const DeferredTarget& target,
                const DeferredLayers& layers)
-      : target_(target), out_(target.out), layers_(layers),
+      : target_(target), out_(target.out), layers_(layers), tiles_(out_.view.width, out_.view.height),
         locks_(std::max(1, out_.view.width), std::max(1, out_.view.height)) {
     for (const DeferredGroom& groom : grooms) jobs_.push_back(make_project_job(out_.view, scene.grooms[groom.groom]));
     out_.samples = std::max(1, layers.samples);
@@ -170,6 +173,35 @@ class TargetLayers {
     if (layers.samples > 0) clear(out_.sample_keys, static_cast<std::size_t>(out_.samples));
     if (layers.coverage && !empty())
       coverage_.emplace(out_, target.view, target.opaque_depth, static_cast<std::size_t>(out_.samples));
+  }
+
+  /// Strands that lie behind all that is drawn by now are hidden from now on. Nobody may draw meanwhile.
+  void update_hidden() {
+    if (coverage_ || empty()) return;  // area counts wherever it is
+    if (layers_.center) tiles_.update(out_.center, 1);
+    else if (layers_.samples > 0) tiles_.update(out_.sample_keys, static_cast<std::size_t>(out_.samples));
+  }
+
+  /// Whether the strands of a bundle change no key. Where the center layer hides them, so do the others: the conservative
+  /// layer is nowhere farther.
+  bool hides(const BundleDraw& bundle, const PreparedHairMesh& mesh) const {
+    if (layers_.center && layers_.samples > 0) return false;
+    const ProjectJob& job = jobs_[bundle.groom];
+    Vec2 low(INFINITY, INFINITY), high(-INFINITY, -INFINITY);
+    float nearest = INFINITY;
+    for (const Vec3 corner : corners(mesh.boxes[bundle.bundle])) {
+      const Vec3 p = transform_point(job.to_camera, corner);
+      if (!(p.z >= job.view.near_plane)) return false;
+      const Vec2 at = project(job.view, p);
+      low = {std::min(low.x, at.x), std::min(low.y, at.y)}, high = {std::max(high.x, at.x), std::max(high.y, at.y)};
+      nearest = std::min(nearest, p.z);
+    }
+    nearest *= 1 - 1e-5f;  // for roundings
+    const float width = mesh.mesh->width * job.width_scale * bundle.width_scale * pixels_per_metre(job.view, nearest);
+    // From its line a band reaches 1.5 radii (kRasterMiterLimit) past its ends and √2 radii aside, and pixels are touched beside it.
+    const float reach = 1 + 1.5f * width;
+    const float level = kernel::raster_depth_level(nearest, out_.range.near_end, out_.range.levels_per_metre());
+    return tiles_.hides({low.x - reach, low.y - reach}, {high.x + reach, high.y + reach}, static_cast<std::uint32_t>(level));
   }
 
   /// The strands of `w.group`, packed into `w.block`.
@@ -204,6 +236,7 @@ class TargetLayers {
   DeferredBuffer& out_;
   DeferredLayers layers_;
   std::vector<ProjectJob> jobs_;  // by groom
+  DepthTiles tiles_;
   TileLocks locks_;
   std::optional<CoverageLayer> coverage_;
 };
@@ -256,21 +289,31 @@ std::uint64_t raster_hair_meshes(const Scene& scene, std::span<const DeferredGro
   tbb::enumerable_thread_specific<Worker> workers;
   std::atomic<std::uint64_t> segments{0};
   SharedProgress shared(progress, "raster", std::max<std::size_t>(1, groups.size()));
-  parallel_for(groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
-    Worker& w = workers.local();
-    std::uint64_t made = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const BundleDraw& draw = selection.bundles[groups[i].bundle];
-      const std::size_t strands = std::min<std::size_t>(StrandGroup::kLanes, draw.strands - groups[i].first);
-      make_strands(grooms[draw.groom].mesh->cages[draw.bundle], groups[i].first, strands, draw.points, w.group);
-      pack_group(w.group, payloads[draw.groom], w.block);
-      for (std::size_t v = 0; v < views.size(); ++v)
-        if (draw.views >> v & 1) views[v].draw(draw, w);
-      made += strands * (draw.points - 1);
-    }
-    segments.fetch_add(made, std::memory_order_relaxed);
-    shared.add(end - begin);
-  });
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::size_t first = groups.size() * part / kParts, last = groups.size() * (part + 1) / kParts;
+    if (part > 0)
+      for (TargetLayers& view : views) view.update_hidden();
+    parallel_for(last - first, kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+      Worker& w = workers.local();
+      std::uint64_t made = 0;
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        const BundleDraw& draw = selection.bundles[groups[i].bundle];
+        const PreparedHairMesh& mesh = *grooms[draw.groom].mesh;
+        std::uint32_t seen = 0;
+        for (std::size_t v = 0; v < views.size(); ++v)
+          if ((draw.views >> v & 1) && !views[v].hides(draw, mesh)) seen |= 1u << v;
+        if (seen == 0) continue;
+        const std::size_t strands = std::min<std::size_t>(StrandGroup::kLanes, draw.strands - groups[i].first);
+        make_strands(mesh.cages[draw.bundle], groups[i].first, strands, draw.points, w.group);
+        pack_group(w.group, payloads[draw.groom], w.block);
+        for (std::size_t v = 0; v < views.size(); ++v)
+          if (seen >> v & 1) views[v].draw(draw, w);
+        made += strands * (draw.points - 1);
+      }
+      segments.fetch_add(made, std::memory_order_relaxed);
+      shared.add(end - begin);
+    });
+  }
   for (TargetLayers& view : views) view.finish();
   return segments;
 }

@@ -35,7 +35,8 @@ struct DeferredTarget {
 
 /// Clears the layers of all targets and draws the strands of `selection` into them, each made once. Target v is the view of that
 /// number in `selection`; what it gets is what it would get alone. The same bits for any number of threads and any instruction set.
-/// Returns the number of segments that were made.
+/// Returns the number of segments that were made: bundles that nearer ones hide as a whole are left out, but for
+/// layers of area, or of centers and samples at once.
 ///
 /// targets: as many as views were selected for. Throws what `progress` throws; Error("raster", …) when it cancels.
 std::uint64_t raster_hair_meshes(const Scene& scene, std::span<const DeferredGroom> grooms, const LodSelection& selection,

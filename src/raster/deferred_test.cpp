@@ -30,6 +30,7 @@ struct Drawn {
   DeferredBuffer buffer;
   LodSelection selection;
   CameraView view;
+  std::uint64_t segments = 0;
 };
 
 Drawn draw(const Scene& scene, int width, int height, const DeferredLayers& layers, const Buffer<float>& opaque = {}) {
@@ -39,7 +40,7 @@ Drawn draw(const Scene& scene, int width, int height, const DeferredLayers& laye
   d.selection = select_lod(scene, grooms, std::span(&d.view, 1));
   place_deferred(scene, grooms, d.selection, 0, d.view, d.buffer);
   const DeferredTarget target{d.view, opaque, d.buffer};
-  raster_hair_meshes(scene, grooms, d.selection, std::span(&target, 1), layers);
+  d.segments = raster_hair_meshes(scene, grooms, d.selection, std::span(&target, 1), layers);
   return d;
 }
 
@@ -256,6 +257,30 @@ TEST(DeferredRaster, EachOfManyViewsIsWhatItIsAlone) {
     if (v + 1 < pictures.size()) EXPECT_GT(strands, 50) << v;
     else EXPECT_EQ(strands, 0);
   }
+}
+
+// Grooms one behind another: most of what the first one hides is not even made, and no pixel shows it.
+TEST(DeferredRaster, HiddenStrandsAreLeftOutAndNothingElse) {
+  HairMesh mesh = small_hair_mesh({}, 2, 5, 24);
+  mesh.width = 0.02f;
+  Scene scene = hair_mesh_scene(mesh);
+  scene.camera.eye = {0.03f, 0.1f, 0.5f}, scene.camera.target = {0.03f, 0.1f, 0};
+  scene.settings.swr.points = 9, scene.settings.swr.lod = false;
+  for (int behind = 1; behind < 4; ++behind) {
+    scene.grooms.push_back(scene.grooms[0]);
+    Affine& small = scene.grooms.back().transform;
+    for (int axis = 0; axis < 3; ++axis) small.m[axis][axis] = 0.25f;
+    small.m[0][3] = 0.0225f, small.m[1][3] = 0.0675f, small.m[2][3] = -0.2f * static_cast<float>(behind);
+  }
+  const Drawn d = draw(scene, 160, 120, kBoth);
+  EXPECT_LE(d.segments, 3 * (d.selection.points - d.selection.strands) / 4);
+  const PlainLayers plain = plain_layers(scene, d);
+  EXPECT_TRUE(same(d.buffer.center, plain.center));
+  EXPECT_TRUE(same(d.buffer.conservative, plain.conservative));
+  const auto samples_of = [&](DeferredLayers layers) { return draw(scene, 160, 120, layers); };
+  const Drawn alone = samples_of({.center = false, .samples = 4}), all = samples_of({.center = true, .samples = 4});
+  EXPECT_LT(alone.segments, all.segments) << "hidden in one layer is not hidden in both";
+  EXPECT_EQ(std::memcmp(alone.buffer.sample_keys.data(), all.buffer.sample_keys.data(), all.buffer.sample_keys.bytes()), 0);
 }
 
 TEST(DeferredRaster, SameBitsForAnyThreadsAndInstructionSet) {
