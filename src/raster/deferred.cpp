@@ -28,7 +28,8 @@ namespace {
 
 constexpr std::size_t kGrain = 1 << 16;
 constexpr std::size_t kGroupsPerTask = 8;
-/// Parts that all groups are drawn in, nearest first; what those before hide is left out.
+/// Parts that strands of several grooms are drawn in, nearest first; what those before hide is left out. One groom hardly hides
+/// bundles of its own.
 constexpr std::size_t kParts = 8;
 
 /// What one thread works with; reused from task to task.
@@ -175,6 +176,9 @@ class TargetLayers {
       coverage_.emplace(out_, target.view, target.opaque_depth, static_cast<std::size_t>(out_.samples));
   }
 
+  /// Whether something hides strands before any is drawn.
+  bool starts_opaque() const { return !target_.opaque_depth.empty(); }
+
   /// Strands that lie behind all that is drawn by now are hidden from now on. Nobody may draw meanwhile.
   void update_hidden() {
     if (coverage_ || empty()) return;  // area counts wherever it is
@@ -241,6 +245,14 @@ class TargetLayers {
   std::optional<CoverageLayer> coverage_;
 };
 
+/// The views that may see a bundle, a bit each.
+std::uint32_t seen_by(const std::deque<TargetLayers>& views, const BundleDraw& bundle, const PreparedHairMesh& mesh) {
+  std::uint32_t seen = 0;
+  for (std::size_t v = 0; v < views.size(); ++v)
+    if ((bundle.views >> v & 1) && !views[v].hides(bundle, mesh)) seen |= 1u << v;
+  return seen;
+}
+
 }  // namespace
 
 void place_deferred(const Scene& scene, std::span<const DeferredGroom> grooms, const LodSelection& selection,
@@ -289,19 +301,19 @@ std::uint64_t raster_hair_meshes(const Scene& scene, std::span<const DeferredGro
   tbb::enumerable_thread_specific<Worker> workers;
   std::atomic<std::uint64_t> segments{0};
   SharedProgress shared(progress, "raster", std::max<std::size_t>(1, groups.size()));
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const std::size_t first = groups.size() * part / kParts, last = groups.size() * (part + 1) / kParts;
-    if (part > 0)
-      for (TargetLayers& view : views) view.update_hidden();
+  const std::size_t parts = grooms.size() > 1 ? kParts : 1;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t first = groups.size() * part / parts, last = groups.size() * (part + 1) / parts;
+    for (TargetLayers& view : views)
+      if (part > 0 || view.starts_opaque()) view.update_hidden();
     parallel_for(last - first, kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
       Worker& w = workers.local();
       std::uint64_t made = 0;
+      std::uint32_t seen = 0;  // bit v: by view v, of the bundle before
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const BundleDraw& draw = selection.bundles[groups[i].bundle];
         const PreparedHairMesh& mesh = *grooms[draw.groom].mesh;
-        std::uint32_t seen = 0;
-        for (std::size_t v = 0; v < views.size(); ++v)
-          if ((draw.views >> v & 1) && !views[v].hides(draw, mesh)) seen |= 1u << v;
+        if (i == first + begin || groups[i].bundle != groups[i - 1].bundle) seen = seen_by(views, draw, mesh);
         if (seen == 0) continue;
         const std::size_t strands = std::min<std::size_t>(StrandGroup::kLanes, draw.strands - groups[i].first);
         make_strands(mesh.cages[draw.bundle], groups[i].first, strands, draw.points, w.group);

@@ -266,14 +266,21 @@ TEST(DeferredRaster, HiddenStrandsAreLeftOutAndNothingElse) {
   Scene scene = hair_mesh_scene(mesh);
   scene.camera.eye = {0.03f, 0.1f, 0.5f}, scene.camera.target = {0.03f, 0.1f, 0};
   scene.settings.swr.points = 9, scene.settings.swr.lod = false;
-  for (int behind = 1; behind < 4; ++behind) {
+  // The large one leans toward the eye: it comes first, and small ones before its foot come later, but are seen.
+  Affine& large = scene.grooms[0].transform;
+  large.m[1][1] = large.m[2][2] = 0.5f, large.m[2][1] = 0.8660254f, large.m[1][2] = -0.8660254f;
+  large.m[1][3] = 0.05f;
+  for (const Vec3 place :
+       {Vec3(0.0225f, 0.08f, -0.2f), Vec3(0.01f, 0.08f, -0.4f), Vec3(0.0225f, 0.04f, 0.06f), Vec3(-0.04f, 0.08f, -0.1f),
+        Vec3(0.03f, 0.03f, 0.02f), Vec3(0, 0.05f, 0.04f), Vec3(0.02f, 0.06f, 0.02f), Vec3(0.02f, 0.07f, 0.05f)}) {
     scene.grooms.push_back(scene.grooms[0]);
     Affine& small = scene.grooms.back().transform;
+    small = Affine();
     for (int axis = 0; axis < 3; ++axis) small.m[axis][axis] = 0.25f;
-    small.m[0][3] = 0.0225f, small.m[1][3] = 0.0675f, small.m[2][3] = -0.2f * static_cast<float>(behind);
+    small.m[0][3] = place.x, small.m[1][3] = place.y, small.m[2][3] = place.z;
   }
   const Drawn d = draw(scene, 160, 120, kBoth);
-  EXPECT_LE(d.segments, 3 * (d.selection.points - d.selection.strands) / 4);
+  EXPECT_LT(d.segments, 9 * (d.selection.points - d.selection.strands) / 10);
   const PlainLayers plain = plain_layers(scene, d);
   EXPECT_TRUE(same(d.buffer.center, plain.center));
   EXPECT_TRUE(same(d.buffer.conservative, plain.conservative));
@@ -353,6 +360,32 @@ TEST(DeferredRaster, OpaqueDepthHidesWhatLiesBehind) {
     before += !left && deferred::is_strand(open.buffer.conservative[p]);
   }
   EXPECT_GT(before, 500);
+}
+
+// A wall through the hair hides what is behind it, wherever it stands: strands before it stay, and behind it fewer are made.
+TEST(DeferredRaster, AWallLeavesWhatStandsBeforeIt) {
+  const Scene scene = hair_mesh_scene(small_hair_mesh(every_operator()));
+  const DeferredLayers layers{.center = true, .conservative = true};
+  const Drawn open = draw(scene, 120, 90, layers);
+  const DepthRange& range = open.buffer.range;
+  std::uint64_t fewest = open.segments;
+  int kept = 0;
+  for (int i = 0; i < 8; ++i) {
+    const float wall = range.near_end + (range.far_end - range.near_end) * static_cast<float>(i) / 8;
+    Buffer<float> opaque(120 * 90);
+    opaque.fill(wall);
+    const Drawn d = draw(scene, 120, 90, layers, opaque);
+    const auto level = static_cast<std::uint32_t>(kernel::raster_depth_level(wall, range.near_end, range.levels_per_metre()));
+    for (std::size_t p = 0; p < open.buffer.center.size(); ++p) {
+      const PixelKey key = open.buffer.center[p];
+      const bool before = deferred::is_strand(key) && deferred::depth_level(key) < level;
+      ASSERT_EQ(d.buffer.center[p], before ? key : kEmptyPixel) << wall;
+      kept += before;
+    }
+    fewest = std::min(fewest, d.segments);
+  }
+  EXPECT_GT(kept, 500);
+  EXPECT_LE(fewest, open.segments / 4) << "the first wall stands before all bundles but the nearest";
 }
 
 // The area of strands that are made on the fly is that of the same strands from memory.
