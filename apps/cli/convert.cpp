@@ -23,11 +23,21 @@ struct Options {
   ImportOptions import;
 };
 
+// Whether the strands were read as they are stored, so that what the file says about them holds.
+bool as_in_its_file(const ImportReport& report) {
+  return report.scale == 1.f && report.up == UpAxis::kY && report.repairs.clean();
+}
+
 void convert_groom(const Options& options) {
   ImportReport report;
   ProgressLine line;
   const StrandSet set = read_strands(options.in, options.import, &report, line.callback());
-  const std::vector<std::string> lost = write_strands(options.out, set, options.format, line.callback());
+  const LodHierarchy lod = read_lod(options.in);
+  const bool keep = !lod.empty() && options.out.ends_with(".pelage") && options.format.empty() && as_in_its_file(report);
+  std::vector<std::string> lost;
+  if (keep) write_lod(options.out, set, lod, line.callback());
+  else lost = write_strands(options.out, set, options.format, line.callback());
+  if (!keep && !lod.empty()) lost.emplace_back("levels of detail are not kept; pelage lod build makes them again");
   fmt::print(stderr, "{}: {} strands, {} points\n{}", options.out, set.strand_count(), set.point_count(),
              import_summary(report));
   for (const std::string& sentence : lost) fmt::print(stderr, "  {}\n", sentence);

@@ -8,11 +8,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "import_options.h"
 #include "io/byte_source.h"
 #include "io/file_kind.h"
+#include "lod_table.h"
 #include "terminal.h"
 #include "verbs.h"
 
@@ -105,25 +107,27 @@ Json groom_info(const std::string& path, const ImportOptions& options) {
   ImportReport report;
   ProgressLine line;
   const StrandSet set = read_strands(path, options, &report, line.callback());
-  return {{"kind", "groom"},
-          {"format", report.format},
-          {"strands", set.strand_count()},
-          {"points", set.point_count()},
-          {"points_per_strand", to_json(points_per_strand(set))},
-          {"basis", basis_name(set.basis)},
-          {"bounds", to_json(bounds(set))},
-          {"lengths", to_json(strand_lengths(set))},
-          {"widths", to_json(strand_widths(set))},
-          {"scale", report.scale},
-          {"scale_guessed", report.scale_guessed},
-          {"up", up_name(report.up)},
-          {"up_guessed", report.up_guessed},
-          {"width_guessed", report.width_guessed},
-          {"attributes", attributes(set)},
-          {"comment", set.comment},
-          {"bytes", resident_bytes(set)},
-          {"repairs", to_json(report.repairs)},
-          {"notes", report.notes}};
+  Json json{{"kind", "groom"},
+            {"format", report.format},
+            {"strands", set.strand_count()},
+            {"points", set.point_count()},
+            {"points_per_strand", to_json(points_per_strand(set))},
+            {"basis", basis_name(set.basis)},
+            {"bounds", to_json(bounds(set))},
+            {"lengths", to_json(strand_lengths(set))},
+            {"widths", to_json(strand_widths(set))},
+            {"scale", report.scale},
+            {"scale_guessed", report.scale_guessed},
+            {"up", up_name(report.up)},
+            {"up_guessed", report.up_guessed},
+            {"width_guessed", report.width_guessed},
+            {"attributes", attributes(set)},
+            {"comment", set.comment},
+            {"bytes", resident_bytes(set)},
+            {"repairs", to_json(report.repairs)},
+            {"notes", report.notes}};
+  if (const LodHierarchy lod = read_lod(path, line.callback()); !lod.empty()) json["lod"] = lod_json(lod, set);
+  return json;
 }
 
 Json to_json(const StyleOperator& o) {
@@ -254,6 +258,9 @@ void print_groom(const Json& json) {
   row("repairs", json["repairs"]["summary"]);
   row("memory", size_of_file(json["bytes"]));
   for (const Json& note : json["notes"]) row("note", note);
+  if (!json.contains("lod")) return;
+  const char* name = "thick hairs";
+  for (const std::string& text : lod_rows(json["lod"])) row(std::exchange(name, ""), text);
 }
 
 void print_mesh(const Json& json) {

@@ -20,6 +20,7 @@ constexpr int kFailed = 1, kUsage = 2;
 void add_verbs(CLI::App& app) {
   add_grow(app);
   add_fit(app);
+  add_lod(app);
   add_info(app);
   add_convert(app);
   add_render(app);

@@ -61,8 +61,10 @@ struct LodHierarchy {
   std::vector<Vec2> major_weights, minor_weights;  ///< [hair_count·kPoints] by how much the weights grow from the center to the
                                                    ///< corner at its end: sections grow where guides part
   std::vector<float> radii;                        ///< [hair_count·kPoints] mean radius of the fibers, ≥ 0
-  std::vector<Vec3> colors;                        ///< [0] or [hair_count] mean linear reflectance, where the groom has colors
-  std::vector<Vec2> root_uv;  ///< [0] or [hair_count] mean texture coordinate of the roots, where the groom has them
+  std::vector<float> length_ratios;  ///< [hair_count] mean length of the fibers over that of the center: how much more
+                                     ///< hair there is than a straight bundle of it would hold; > 0
+  std::vector<Vec3> colors;          ///< [0] or [hair_count] mean linear reflectance, where the groom has colors
+  std::vector<Vec2> root_uv;         ///< [0] or [hair_count] mean texture coordinate of the roots, where the groom has them
 
   std::size_t levels() const { return level_offsets.empty() ? 0 : level_offsets.size() - 1; }
   std::size_t hair_count() const { return hairs.size(); }
@@ -118,6 +120,14 @@ float mean_width(float a, float b);
 /// The thick hairs of a level as an ordinary groom, to look at: B-splines along the centers, as wide as the mean shadow of their
 /// cross-sections. `level` < levels(), or Error.
 StrandSet extract_level(const LodHierarchy& lod, std::size_t level);
+
+/// Writes `strands` and `lod` into one `.pelage` file; who asks it for strands alone does not notice. Throws Error, also where `lod`
+/// does not belong to `strands`; then nothing is left at `path` that was not there.
+void write_lod(const std::string& path, const StrandSet& strands, const LodHierarchy& lod, const Progress& progress = {});
+
+/// The hierarchy of a `.pelage` file; empty() where the file has none, or is of another format. It satisfies validate(), and
+/// belongs to the strands as the file holds them: neither scaled nor turned nor repaired. Throws Error naming the section.
+LodHierarchy read_lod(const std::string& path, const Progress& progress = {});
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Skinning: guides move, everything else follows.

@@ -56,7 +56,7 @@ void set_strand_weights(const Stations& stations, LodHierarchy& lod) {
 
 /// What a hair takes, its colors and texture coordinate included where the groom has them.
 std::size_t bytes_of_hair(const StrandSet& set) {
-  return sizeof(ThickHair) + sizeof(Vec2) + kPoints * (3 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(float)) +
+  return sizeof(ThickHair) + sizeof(Vec2) + sizeof(float) + kPoints * (3 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(float)) +
          (set.colors.empty() ? 0 : sizeof(Vec3)) + (set.root_uv.empty() ? 0 : sizeof(Vec2));
 }
 
@@ -89,7 +89,7 @@ class HairWriter {
   HairWriter(const StrandSet& set, const Stations& stations, const LodSettings& settings, LodHierarchy& lod)
       : set_(set), stations_(stations), settings_(settings), lod_(lod) {
     const std::size_t n = lod.hair_count();
-    lod.weights.resize(n);
+    lod.weights.resize(n), lod.length_ratios.resize(n);
     lod.centers.resize(n * kPoints), lod.major.resize(n * kPoints), lod.minor.resize(n * kPoints);
     lod.major_weights.resize(n * kPoints), lod.minor_weights.resize(n * kPoints), lod.radii.resize(n * kPoints);
     lod.colors.resize(set.colors.empty() ? 0 : n), lod.root_uv.resize(set.root_uv.empty() ? 0 : n);
@@ -110,6 +110,7 @@ class HairWriter {
       lod_.minor_weights[i] = growth(strands, k, section, section.minor, lod_.weights[h]);
     }
     bspline_through(centers.data(), &lod_.centers[h * kPoints]);
+    lod_.length_ratios[h] = length_ratio(strands, &lod_.centers[h * kPoints]);
     if (!lod_.root_uv.empty()) lod_.root_uv[h] = mean_of(strands, [&](std::uint32_t s) { return set_.root_uv[s]; });
     if (!lod_.colors.empty()) lod_.colors[h] = mean_color(strands);
   }
@@ -136,6 +137,13 @@ class HairWriter {
     if (!(xx > 0)) return {};
     const double scale = static_cast<double>(dot(axis, axis)) / xx;
     return {static_cast<float>(first * scale), static_cast<float>(second * scale)};
+  }
+
+  float length_ratio(std::span<const std::uint32_t> strands, const Vec3* center) const {
+    double fibers = 0, line = 0;
+    for (const std::uint32_t s : strands) fibers += static_cast<double>(stations_.lengths[s]);
+    for (std::size_t k = 1; k < kPoints; ++k) line += static_cast<double>(length(center[k] - center[k - 1]));
+    return line > 0 ? static_cast<float>(fibers / (line * static_cast<double>(strands.size()))) : 1;
   }
 
   Vec3 mean_color(std::span<const std::uint32_t> strands) const {

@@ -18,6 +18,11 @@ struct Flat {
   double x, y;
 };
 
+/// A fiber in a section: somewhere within `stray` of its place.
+struct Place {
+  double x, y, stray;
+};
+
 Vec3 any_perpendicular(Vec3 t) { return normalize(cross(t, std::fabs(t.x) < 0.6f ? Vec3(1, 0, 0) : Vec3(0, 1, 0))); }
 
 /// Planes across the line through `centers`, each turned against the one before as little as can be.
@@ -45,9 +50,9 @@ struct Moments {
   }
 };
 
-Moments moments_of(const std::vector<Flat>& places) {
+Moments moments_of(const std::vector<Place>& places) {
   Moments m;
-  for (const Flat p : places) m.xx += p.x * p.x, m.xy += p.x * p.y, m.yy += p.y * p.y;
+  for (const Place& p : places) m.xx += p.x * p.x, m.xy += p.x * p.y, m.yy += p.y * p.y;
   const double share = 1 / static_cast<double>(places.size());
   m.xx *= share, m.xy *= share, m.yy *= share;
   return m;
@@ -74,24 +79,25 @@ std::array<double, kPoints> angles_along(const std::array<Moments, kPoints>& mom
 }
 
 /// Semi-axes along `angle` that hold the share `covered` of `places`, and a fiber's radius more.
-Flat semi_axes(const std::vector<Flat>& places, double angle, double radius, float covered, std::vector<double>& scratch) {
+Flat semi_axes(const std::vector<Place>& places, double angle, double radius, float covered, std::vector<double>& scratch) {
   const double c = std::cos(angle), s = std::sin(angle);
   double xx = radius * radius, yy = xx;  // a fiber is no point: sections of few fibers keep a sensible shape
   const double share = 1 / static_cast<double>(places.size());
-  for (const Flat p : places) {
-    const double x = c * p.x + s * p.y, y = c * p.y - s * p.x;
-    xx += x * x * share, yy += y * y * share;
+  for (const Place& p : places) {
+    const double x = c * p.x + s * p.y, y = c * p.y - s * p.x, around = 0.5 * p.stray * p.stray;
+    xx += (x * x + around) * share, yy += (y * y + around) * share;
   }
   if (!(xx > 0) || !(yy > 0)) xx = std::max(xx, 1e-30), yy = std::max(yy, 1e-30);
   scratch.clear();
-  for (const Flat p : places) {
+  const double thin = std::sqrt(std::min(xx, yy));
+  for (const Place& p : places) {
     const double x = c * p.x + s * p.y, y = c * p.y - s * p.x;
-    scratch.push_back(x * x / xx + y * y / yy);
+    scratch.push_back(std::sqrt(x * x / xx + y * y / yy) + p.stray / thin);
   }
   const auto n = static_cast<double>(places.size());
   const auto held = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(static_cast<double>(covered) * n - 1e-6), 1., n)) - 1;
   std::nth_element(scratch.begin(), scratch.begin() + held, scratch.end());
-  const double scale = std::sqrt(scratch[static_cast<std::size_t>(held)]);
+  const double scale = scratch[static_cast<std::size_t>(held)];
   return {scale * std::sqrt(xx) + radius, scale * std::sqrt(yy) + radius};
 }
 
@@ -117,12 +123,13 @@ std::array<CrossSection, kPoints> fit_cross_sections(const Stations& stations, s
   std::array<CrossSection, kPoints> sections;
   set_centers(stations, strands, sections);
   const std::array<Plane, kPoints> planes = planes_along(sections);
-  std::array<std::vector<Flat>, kPoints> places;
+  std::array<std::vector<Place>, kPoints> places;
   std::array<Moments, kPoints> moments;
   for (std::size_t k = 0; k < kPoints; ++k) {
     for (const std::uint32_t s : strands) {
       const Vec3 off = stations.strand(s)[k] - sections[k].center;
-      places[k].push_back({static_cast<double>(dot(off, planes[k].u)), static_cast<double>(dot(off, planes[k].v))});
+      places[k].push_back({static_cast<double>(dot(off, planes[k].u)), static_cast<double>(dot(off, planes[k].v)),
+                           static_cast<double>(stations.stray(s)[k])});
     }
     moments[k] = moments_of(places[k]);
   }

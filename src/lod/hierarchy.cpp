@@ -52,6 +52,7 @@ class Rules {
     for (const auto* array : {&lod_.major_weights, &lod_.minor_weights})
       require_size(*array, n * kPoints, "weights of corners");
     require_size(lod_.radii, n * kPoints, "radii");
+    require_size(lod_.length_ratios, n, "length ratios");
     if (!lod_.colors.empty()) require_size(lod_.colors, n, "colors");
     if (!lod_.root_uv.empty()) require_size(lod_.root_uv, n, "root uv");
   }
@@ -118,6 +119,9 @@ class Rules {
       require(std::all_of(array->begin(), array->end(), finite), "weights of corners", "one is not finite");
     require(std::all_of(lod_.radii.begin(), lod_.radii.end(), [](float r) { return r >= 0 && r <= kMaxCoordinate; }), "radii",
             "one is negative or not finite");
+    require(
+        std::all_of(lod_.length_ratios.begin(), lod_.length_ratios.end(), [](float x) { return x > 0 && x <= kMaxCoordinate; }),
+        "length ratios", "one is not positive and finite");
     const auto color = [](Vec3 c) {
       return std::fmin(std::fmin(c.x, c.y), c.z) >= 0 && std::fmax(std::fmax(c.x, c.y), c.z) <= 1.00001f && is_finite(c);
     };
@@ -152,7 +156,8 @@ std::size_t resident_bytes(const LodHierarchy& lod) {
   return bytes_of(lod.guide_strands) + bytes_of(lod.guides) + bytes_of(lod.prisms) + bytes_of(lod.order) +
          bytes_of(lod.strand_weights) + bytes_of(lod.level_offsets) + bytes_of(lod.hairs) + bytes_of(lod.weights) +
          bytes_of(lod.centers) + bytes_of(lod.major) + bytes_of(lod.minor) + bytes_of(lod.major_weights) +
-         bytes_of(lod.minor_weights) + bytes_of(lod.radii) + bytes_of(lod.colors) + bytes_of(lod.root_uv);
+         bytes_of(lod.minor_weights) + bytes_of(lod.radii) + bytes_of(lod.length_ratios) + bytes_of(lod.colors) +
+         bytes_of(lod.root_uv);
 }
 
 float mean_width(float a, float b) {
@@ -165,10 +170,11 @@ float mean_width(float a, float b) {
 
 std::vector<LodLevelSummary> summarize(const LodHierarchy& lod) {
   std::vector<LodLevelSummary> levels;
-  const std::size_t bytes =
-      lod.empty() ? 0
-                  : sizeof(ThickHair) + sizeof(Vec2) + kPoints * (3 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(float)) +
-                        (lod.colors.empty() ? 0 : sizeof(Vec3)) + (lod.root_uv.empty() ? 0 : sizeof(Vec2));
+  const std::size_t bytes = lod.empty()
+                                ? 0
+                                : sizeof(ThickHair) + sizeof(Vec2) + sizeof(float) +
+                                      kPoints * (3 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(float)) +
+                                      (lod.colors.empty() ? 0 : sizeof(Vec3)) + (lod.root_uv.empty() ? 0 : sizeof(Vec2));
   for (std::size_t l = 0; l < lod.levels(); ++l) {
     LodLevelSummary s;
     s.hairs = lod.level(l).size(), s.segments = s.hairs * (kPoints - 1), s.bytes = s.hairs * bytes;

@@ -88,12 +88,32 @@ void project(const Projection& projection, const std::array<Vec3, kSamples>& sam
   points[0] = samples.front(), points[kPoints - 1] = samples.back();
 }
 
+/// Largest distance from the samples around each control point to the spline.
+void measure_strays(const std::array<Row, kSamples>& h, const std::array<Vec3, kSamples>& samples, const Vec3* points,
+                    float* strays) {
+  constexpr std::size_t kSpan = (kSamples - 1) / (kPoints - 1);
+  std::array<float, kSamples> off;
+  for (std::size_t j = 0; j < kSamples; ++j) {
+    Vec3 p;  // four control points count at a sample, those around its span
+    const std::size_t span = std::min(j / kSpan, kPoints - 2);
+    for (std::size_t k = span > 0 ? span - 1 : 0; k < std::min(span + 3, kPoints); ++k)
+      p += points[k] * static_cast<float>(h[j][k]);
+    off[j] = length(samples[j] - p);
+  }
+  for (std::size_t k = 0; k < kPoints; ++k) {
+    const std::size_t first = k > 0 ? k * kSpan - kSpan / 2 : 0, last = std::min(k * kSpan + kSpan / 2, kSamples - 1);
+    strays[k] = *std::max_element(&off[first], &off[last] + 1);
+  }
+}
+
 }  // namespace
 
 Stations fit_stations(const StrandSet& strands, const Progress& progress) {
   Stations out;
   const std::size_t count = strands.strand_count();
   out.points.resize(count * kPoints), out.radii.resize(count * kPoints);
+  out.strays.resize(count * kPoints), out.lengths.resize(count);
+  const std::array<Row, kSamples> weights = spline_weights();
   const Projection projection;
   SharedProgress shared(progress, "lod strands", std::max<std::size_t>(1, count));
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
@@ -108,6 +128,8 @@ Stations fit_stations(const StrandSet& strands, const Progress& progress) {
       });
       samples.front() = strands.points[strands.offsets[s]], samples.back() = strands.points[strands.offsets[s + 1] - 1];
       project(projection, samples, &out.points[s * kPoints]);
+      measure_strays(weights, samples, &out.points[s * kPoints], &out.strays[s * kPoints]);
+      out.lengths[s] = static_cast<float>(path.length());
     }
     shared.add(end - begin);
   });

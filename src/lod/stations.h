@@ -15,10 +15,15 @@ struct Stations {
   static constexpr std::size_t kPoints = LodHierarchy::kPoints;
   std::vector<Vec3> points;  ///< [strand_count·kPoints] metres; the first is the root, the last the tip, to the bit
   std::vector<float> radii;  ///< [strand_count·kPoints] metres
+  std::vector<float>
+      strays;  ///< [strand_count·kPoints] how far the strand's curve leaves the spline between the middles of the
+               ///< spans around, metres: curls that are finer than the control points
+  std::vector<float> lengths;  ///< [strand_count] of the strand's curve, metres
 
   std::size_t strand_count() const { return points.size() / kPoints; }
   const Vec3* strand(std::size_t s) const { return &points[s * kPoints]; }
   const float* radius(std::size_t s) const { return &radii[s * kPoints]; }
+  const float* stray(std::size_t s) const { return &strays[s * kPoints]; }
 };
 
 /// The splines with the least sum of squared distances to points of the strands' curves (Huang 2025, section 5.1, step 1).

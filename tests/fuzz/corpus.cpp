@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kit/hair_mesh_kit.h"
+#include "kit/lod_kit.h"
 
 namespace {
 
@@ -89,6 +90,7 @@ int main(int argc, char** argv) {
     write_strands(at + "small", groom(2, 3, false), format);
     write_strands(at + "full", groom(3, 4, true), format);
   }
+  write_lod(folder("pelage") + "lod.pelage", groom(3, 4, true), kit::small_lod(groom(3, 4, true)));
   std::string old(296, '\0');  // TressFX 3: two strands of two points
   old[2] = old[3] = 0x40, old[4] = 2, old[8] = 2, old[144] = 0x28, old[145] = 1;
   const float points[12] = {0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0};

@@ -13,6 +13,7 @@
 
 #include "io/hair_mesh_formats.h"
 #include "io/image_formats.h"
+#include "io/lod_sections.h"
 #include "io/mesh_formats.h"
 #include "io/scene_tables.h"
 #include "io/strand_registry.h"
@@ -34,6 +35,19 @@ inline void read_groom(std::span<const std::byte> bytes) {
   }
 }
 
+/// The chain of thick hairs of any groom: what comes back satisfies validate(), or an Error has said why not.
+inline void read_chain(std::span<const std::byte> bytes) {
+  try {
+    const LodHierarchy lod = io::read_lod(io::ByteSource("fuzz", bytes));
+    try {
+      if (!lod.empty()) validate(lod, "fuzz");
+    } catch (const Error&) {
+      std::abort();  // the reader's promise is broken
+    }
+  } catch (const Error&) {
+  }
+}
+
 inline void read_mesh(std::span<const std::byte> bytes) {
   try {
     const TriangleMesh mesh = io::read_mesh(io::ByteSource("fuzz", bytes));
@@ -45,8 +59,8 @@ inline void read_mesh(std::span<const std::byte> bytes) {
   }
 }
 
-/// A `.pelage` file made consistent first: its size and checksums are set right, so that inputs get past them.
-inline void read_sealed_groom(std::span<std::byte> bytes) {
+/// Sets the size and the checksums of a `.pelage` file right.
+inline void seal(std::span<std::byte> bytes) {
   constexpr std::size_t kHeader = 64, kSection = 40;  // docs/formats.md
   const auto load = [&](std::size_t at) {
     std::uint64_t value;
@@ -54,19 +68,29 @@ inline void read_sealed_groom(std::span<std::byte> bytes) {
     return value;
   };
   const auto store = [&](std::size_t at, std::uint64_t value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
-  if (bytes.size() >= kHeader) {
-    store(40, bytes.size());
-    const std::size_t sections = std::min<std::size_t>(load(12) & 0xFF, (bytes.size() - kHeader) / kSection);
-    for (std::size_t at = kHeader; at < kHeader + sections * kSection; at += kSection) {
-      const std::uint64_t offset = load(at + 16), size = load(at + 24);
-      if (offset <= bytes.size() && size <= bytes.size() - offset) store(at + 32, io::xxh64(bytes.data() + offset, size));
-    }
-    io::Xxh64 hash;
-    hash.add(bytes.data(), 56);
-    hash.add(bytes.data() + kHeader, sections * kSection);
-    store(56, hash.value());
+  if (bytes.size() < kHeader) return;
+  store(40, bytes.size());
+  const std::size_t sections = std::min<std::size_t>(load(12) & 0xFF, (bytes.size() - kHeader) / kSection);
+  const auto named = [&](std::size_t at, std::string_view name) { return std::memcmp(bytes.data() + at, name.data(), 8) == 0; };
+  std::uint64_t strands = 0;  // checksum of the points, which the levels of detail repeat
+  for (std::size_t at = kHeader; at < kHeader + sections * kSection; at += kSection) {
+    const std::uint64_t offset = load(at + 16), size = load(at + 24);
+    if (offset > bytes.size() || size > bytes.size() - offset) continue;
+    if (named(at, {"lodhead\0", 8}) && size == 32) store(offset + 24, strands);
+    store(at + 32, io::xxh64(bytes.data() + offset, size));
+    if (named(at, {"points\0\0", 8})) strands = load(at + 32);
   }
+  io::Xxh64 hash;
+  hash.add(bytes.data(), 56);
+  hash.add(bytes.data() + kHeader, sections * kSection);
+  store(56, hash.value());
+}
+
+/// A `.pelage` file made consistent first, so that inputs get past its checksums.
+inline void read_sealed_groom(std::span<std::byte> bytes) {
+  seal(bytes);
   read_groom(bytes);
+  read_chain(bytes);
 }
 
 /// Either file of a hair mesh: what comes back satisfies validate(), or an Error has said why not. PELAGE_HAIRMESH=OFF has neither.
@@ -147,7 +171,7 @@ inline void replay(std::string_view name, std::span<const std::byte> bytes) {
   else if (name.starts_with("image_jpeg")) read_jpeg(bytes);
   else if (name.starts_with("image_exr")) read_exr(bytes);
   else if (name.starts_with("image_hdr")) read_hdr(bytes);
-  else read_groom(bytes);
+  else read_groom(bytes), read_chain(bytes);
 }
 
 }  // namespace pelage::fuzz
