@@ -98,7 +98,8 @@ class HairWriter {
   void write(std::size_t h) {
     const ThickHair& hair = lod_.hairs[h];
     const std::span<const std::uint32_t> strands(&lod_.order[hair.first_strand], hair.fibers);
-    const auto sections = fit_cross_sections(stations_, strands, settings_.covered);
+    auto sections = fit_cross_sections(stations_, strands, settings_.covered, true);
+    keep_widths(sections);
     std::array<Vec3, kPoints> centers;
     lod_.weights[h] = mean_of(strands, [&](std::uint32_t s) { return lod_.strand_weights[s]; });
     for (std::size_t k = 0; k < kPoints; ++k) {
@@ -116,6 +117,21 @@ class HairWriter {
   }
 
  private:
+  using Sections = std::array<CrossSection, kPoints>;
+
+  /// Axes are control values of B-splines, which smooth: what that would take away at the knots is added beforehand.
+  static void keep_widths(Sections& sections) {
+    constexpr float kMost = 1.5f;
+    const Sections fitted = sections;
+    for (std::size_t k = 1; k + 1 < kPoints; ++k)
+      for (Vec3 CrossSection::*axis : {&CrossSection::major, &CrossSection::minor}) {
+        const Vec3 smooth = (fitted[k - 1].*axis + fitted[k].*axis * 4.f + fitted[k + 1].*axis) / 6.f;
+        const float whole = length(fitted[k].*axis), left = length(smooth);
+        sections[k].*axis *= left > 0 ? std::clamp(whole / left, 1.f, kMost) : kMost;
+      }
+    put_longer_first(sections);
+  }
+
   template <class Value>
   static Vec2 mean_of(std::span<const std::uint32_t> strands, const Value& value) {
     double x = 0, y = 0;
@@ -143,7 +159,7 @@ class HairWriter {
     double fibers = 0, line = 0;
     for (const std::uint32_t s : strands) fibers += static_cast<double>(stations_.lengths[s]);
     for (std::size_t k = 1; k < kPoints; ++k) line += static_cast<double>(length(center[k] - center[k - 1]));
-    return line > 0 ? static_cast<float>(fibers / (line * static_cast<double>(strands.size()))) : 1;
+    return line > 0 && fibers > 0 ? static_cast<float>(fibers / (line * static_cast<double>(strands.size()))) : 1;
   }
 
   Vec3 mean_color(std::span<const std::uint32_t> strands) const {

@@ -53,7 +53,7 @@ class Divider {
   static double divisible(const Part& p) { return p.strands.size() > 1 ? p.weight() : 0; }
 
   Part part(Strands strands) const {
-    const double area = static_cast<double>(mean_area(fit_cross_sections(stations_, strands, settings_.covered)));
+    const double area = static_cast<double>(mean_area(fit_cross_sections(stations_, strands, settings_.covered, false)));
     return {std::move(strands), area};
   }
 

@@ -16,7 +16,8 @@ namespace pelage {
 void group_by_prism(const std::vector<Prism>& nearest, LodHierarchy& lod);
 
 /// Adds a level below the finest one: every hair's strands in parts, whose mean area, a strand's part counting as often as there
-/// are strands in it, is about 1/area_ratio of the hair's. Reorders strands within hairs of the finest level.
+/// are strands in it, is about 1/area_ratio of the hair's; areas without strays, which no division makes less. Reorders strands within hairs of the
+/// finest level.
 ///
 /// The part with the most area in it is divided in two (k-means) until that is reached, or kMostParts are; strands that lie in the
 /// same places stay together.

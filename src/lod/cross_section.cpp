@@ -78,6 +78,20 @@ std::array<double, kPoints> angles_along(const std::array<Moments, kPoints>& mom
   return angle;
 }
 
+/// How many times the ellipse with semi-axes a and b has to grow until it holds a place and what is around it.
+double farthest(const Place& p, double a, double b) {
+  if (!(p.stray > 0)) return std::hypot(p.x / a, p.y / b);
+  constexpr double kSlant = std::numbers::sqrt2 / 2;
+  constexpr Flat kAround[] = {{1, 0},  {kSlant, kSlant},   {0, 1},  {-kSlant, kSlant},
+                              {-1, 0}, {-kSlant, -kSlant}, {0, -1}, {kSlant, -kSlant}};
+  double most2 = 0;
+  for (const Flat d : kAround) {
+    const double x = (p.x + p.stray * d.x) / a, y = (p.y + p.stray * d.y) / b;
+    most2 = std::max(most2, x * x + y * y);
+  }
+  return std::sqrt(most2);
+}
+
 /// Semi-axes along `angle` that hold the share `covered` of `places`, and a fiber's radius more.
 Flat semi_axes(const std::vector<Place>& places, double angle, double radius, float covered, std::vector<double>& scratch) {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -89,11 +103,8 @@ Flat semi_axes(const std::vector<Place>& places, double angle, double radius, fl
   }
   if (!(xx > 0) || !(yy > 0)) xx = std::max(xx, 1e-30), yy = std::max(yy, 1e-30);
   scratch.clear();
-  const double thin = std::sqrt(std::min(xx, yy));
-  for (const Place& p : places) {
-    const double x = c * p.x + s * p.y, y = c * p.y - s * p.x;
-    scratch.push_back(std::sqrt(x * x / xx + y * y / yy) + p.stray / thin);
-  }
+  for (const Place& p : places)
+    scratch.push_back(farthest({c * p.x + s * p.y, c * p.y - s * p.x, p.stray}, std::sqrt(xx), std::sqrt(yy)));
   const auto n = static_cast<double>(places.size());
   const auto held = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(static_cast<double>(covered) * n - 1e-6), 1., n)) - 1;
   std::nth_element(scratch.begin(), scratch.begin() + held, scratch.end());
@@ -119,7 +130,7 @@ void set_centers(const Stations& stations, std::span<const std::uint32_t> strand
 }  // namespace
 
 std::array<CrossSection, kPoints> fit_cross_sections(const Stations& stations, std::span<const std::uint32_t> strands,
-                                                     float covered) {
+                                                     float covered, bool strays) {
   std::array<CrossSection, kPoints> sections;
   set_centers(stations, strands, sections);
   const std::array<Plane, kPoints> planes = planes_along(sections);
@@ -129,26 +140,30 @@ std::array<CrossSection, kPoints> fit_cross_sections(const Stations& stations, s
     for (const std::uint32_t s : strands) {
       const Vec3 off = stations.strand(s)[k] - sections[k].center;
       places[k].push_back({static_cast<double>(dot(off, planes[k].u)), static_cast<double>(dot(off, planes[k].v)),
-                           static_cast<double>(stations.stray(s)[k])});
+                           strays ? static_cast<double>(stations.stray(s)[k]) : 0});
     }
     moments[k] = moments_of(places[k]);
   }
-  std::array<double, kPoints> angle = angles_along(moments);
-  std::array<Flat, kPoints> axes;
+  const std::array<double, kPoints> angle = angles_along(moments);
   std::vector<double> scratch;
-  double longer = 0;
   for (std::size_t k = 0; k < kPoints; ++k) {
-    axes[k] = semi_axes(places[k], angle[k], static_cast<double>(sections[k].radius), covered, scratch);
-    longer += axes[k].x - axes[k].y;
-  }
-  for (std::size_t k = 0; k < kPoints; ++k) {
+    const Flat axes = semi_axes(places[k], angle[k], static_cast<double>(sections[k].radius), covered, scratch);
     const auto c = static_cast<float>(std::cos(angle[k])), s = static_cast<float>(std::sin(angle[k]));
-    const Vec3 first = (planes[k].u * c + planes[k].v * s) * static_cast<float>(axes[k].x);
-    const Vec3 second = (planes[k].v * c - planes[k].u * s) * static_cast<float>(axes[k].y);
-    sections[k].major = longer >= 0 ? first : second;
-    sections[k].minor = longer >= 0 ? second : -first;
+    sections[k].major = (planes[k].u * c + planes[k].v * s) * static_cast<float>(axes.x);
+    sections[k].minor = (planes[k].v * c - planes[k].u * s) * static_cast<float>(axes.y);
   }
+  put_longer_first(sections);
   return sections;
+}
+
+void put_longer_first(std::array<CrossSection, kPoints>& sections) {
+  float longer = 0;
+  for (const CrossSection& s : sections) longer += length(s.major) - length(s.minor);
+  if (longer >= 0) return;
+  for (CrossSection& s : sections) {
+    const Vec3 first = s.major;
+    s.major = s.minor, s.minor = -first;
+  }
 }
 
 float mean_area(const std::array<CrossSection, kPoints>& sections) {

@@ -108,7 +108,7 @@ Vec2 prism_weights(const Vec3* strand, const Vec3* g0, const Vec3* g1, const Vec
     const Vec3 e0 = g0[k] - g2[k], e1 = g1[k] - g2[k], x = strand[k] - g2[k];
     a00 += dot3(e0, e0), a01 += dot3(e0, e1), a11 += dot3(e1, e1), b0 += dot3(e0, x), b1 += dot3(e1, x);
   }
-  const double ridge = 1e-4 * (a00 + a11) + 1e-30;  // of w0² + w1² + (1 − w0 − w1)²
+  const double ridge = 1e-6 * (a00 + a11) + 1e-30;  // of w0² + w1² + (1 − w0 − w1)²
   a00 += 2 * ridge, a11 += 2 * ridge, a01 += ridge, b0 += ridge, b1 += ridge;
   const double determinant = a00 * a11 - a01 * a01;
   const double w0 = (b0 * a11 - b1 * a01) / determinant, w1 = (a00 * b1 - a01 * b0) / determinant;
