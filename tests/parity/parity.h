@@ -5,6 +5,7 @@ const float kParityPow = 4.0e-6f;       // e^(y·log x): the error of the logari
 const float kParityScatter = 4.0e-6f;   // some ten roundings and elementary functions in a row
 const float kParityLobe = 5.0e-5f;      // exponents and concentrations of narrow lobes multiply those errors
 const float kParityDraw = 1.0e-4f;      // densities are steep: the error of a direction comes back multiplied
+const float kParityBundle = 2.0e-4f;    // difference quotients of close values
 const float kParityArea = 1.0e-5f;      // roundings of a band's height, some pixels, against an area below 1
 const float kParityGgx = 1.0e-5f;       // the narrow peak multiplies the error of the half vector
 
@@ -78,6 +79,34 @@ PELAGE_FN Vec4 parity_draw_marschner(ScatterLobes l, Vec4 u) {
   ScatterChoice c = scatter_choice_of(l);
   ScatterDirection d = scatter_sample_marschner(l, c, u);
   return parity_drawn(d, scatter_pdf_marschner(l, c, d.sin_i, d.cos_i, d.phi));
+}
+// A bundle of half the width `wide`, 2 mm deep, of hairs of 80 um.
+PELAGE_FN ScatterAggregate parity_aggregate(ScatterLobes l, Float hairs, Float wide) {
+  return scatter_prepare_aggregate(l, scatter_bundle_buffon(hairs, Float(4.0e-5f), wide, Float(2.0e-3f)));
+}
+PELAGE_FN Vec4 parity_bundle(ScatterBundle b, Float cos_phi, Float loss) {
+  return Vec4(scatter_bundle_crossings(b, cos_phi), scatter_bundle_coverage(b),
+              scatter_bundle_visible(b, scatter_bundle_way(b, cos_phi), loss), scatter_bundle_escape(b));
+}
+PELAGE_FN Vec4 parity_aggregate_energies(ScatterAggregate a) { return Vec4(a.a_back.x, a.a_back.z, a.back.v, a.straight.tt.y); }
+PELAGE_FN Vec3 parity_aggregate_marschner(ScatterAggregate a, Float theta_i, Float cos_phi) {
+  return scatter_aggregate_marschner(a, scatter_shares(a, cos_phi), m_sin(theta_i), m_cos(theta_i), cos_phi);
+}
+// The paper's model and its formula for n.
+PELAGE_FN Vec3 parity_aggregate_zhu(ScatterLobes l, Float hairs, Float wide, Float theta_i, Float cos_phi) {
+  ScatterAggregateTerms t = scatter_terms_huang();
+  ScatterAggregate a = scatter_prepare_huang(l, scatter_bundle_huang(hairs, Float(4.0e-5f), wide, Float(2.0e-3f)), t);
+  return scatter_aggregate_zhu(a, scatter_shares_huang(a, t, cos_phi), m_sin(theta_i), m_cos(theta_i), cos_phi);
+}
+PELAGE_FN Vec4 parity_draw_aggregate_marschner(ScatterAggregate a, Vec4 u) {
+  ScatterAggregateChoice c = scatter_choice_aggregate(a);
+  ScatterDirection d = scatter_sample_aggregate_marschner(a, c, u);
+  return parity_drawn(d, scatter_pdf_aggregate_marschner(a, c, d.sin_i, d.cos_i, d.phi));
+}
+PELAGE_FN Vec4 parity_draw_aggregate_zhu(ScatterAggregate a, Vec4 u) {
+  ScatterAggregateChoice c = scatter_choice_aggregate(a);
+  ScatterDirection d = scatter_sample_aggregate_zhu(a, c, u);
+  return parity_drawn(d, scatter_pdf_aggregate_zhu(a, c, d.sin_i, d.cos_i, d.phi));
 }
 PELAGE_FN Vec4 parity_draw_zhu(ScatterLobes l, Vec4 u) {
   ScatterChoice c = scatter_choice_of(l);
