@@ -65,18 +65,17 @@ void add_levels(const StrandSet& set, const Stations& stations, const LodSetting
                 LodHierarchy& lod) {
   const auto allowed = static_cast<double>(settings.memory_share) *
                        static_cast<double>(set.point_count() * sizeof(Vec3) + set.widths.size() * sizeof(float));
-  const std::size_t fixed = resident_bytes(lod);
+  const std::size_t beside =
+      resident_bytes(lod) - lod.hair_count() * sizeof(ThickHair) - lod.level_offsets.size() * sizeof(std::uint32_t);
   SharedProgress shared(progress, "lod levels", settings.levels);
   shared.add(1);
   while (lod.levels() < settings.levels) {
     const std::size_t before = lod.hair_count();
     LodHierarchy finer = lod;
     divide_finest_level(stations, settings, finer);
-    const std::size_t added = finer.hair_count() - before, last = before - lod.level_offsets[lod.levels() - 1];
-    if (added == last) break;
-    if (static_cast<double>(fixed + added * sizeof(ThickHair)) + static_cast<double>(finer.hair_count() * bytes_of_hair(set)) >
-        allowed)
-      break;
+    if (finer.hair_count() - before == before - lod.level_offsets[lod.levels() - 1]) break;
+    const std::size_t bytes = beside + sizeof(std::uint32_t) * (finer.levels() + 1) + finer.hair_count() * bytes_of_hair(set);
+    if (static_cast<double>(bytes) > allowed) break;
     lod = std::move(finer);
     shared.add(1);
   }

@@ -208,6 +208,16 @@ TEST(BuildLod, SatisfiesItsRulesAndItsMemory) {
     }
 }
 
+TEST(BuildLod, UsesTheMemoryThatItMay) {
+  const StrandSet set = groom(HairStyle::kStraight, 3000, 64);
+  const LodHierarchy whole = build_lod(set, {.levels = 3, .guides = 48, .memory_share = 20});
+  const auto share =
+      static_cast<float>(static_cast<double>(resident_bytes(whole)) /
+                         static_cast<double>(set.points.size() * sizeof(Vec3) + set.widths.size() * sizeof(float)));
+  EXPECT_EQ(build_lod(set, {.levels = 3, .guides = 48, .memory_share = share * 1.0001f}).levels(), 3u);
+  EXPECT_EQ(build_lod(set, {.levels = 3, .guides = 48, .memory_share = share * 0.9999f}).levels(), 2u);
+}
+
 TEST(BuildLod, TakesAnyGroom) {
   StrandSet set;
   set.widths = {1e-4f};

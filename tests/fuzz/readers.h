@@ -59,8 +59,8 @@ inline void read_mesh(std::span<const std::byte> bytes) {
   }
 }
 
-/// Sets the size and the checksums of a `.pelage` file right.
-inline void seal(std::span<std::byte> bytes) {
+/// Sets the size and the checksums of a `.pelage` file right; where `belongs`, those by which a chain knows its strands too.
+inline void seal(std::span<std::byte> bytes, bool belongs = true) {
   constexpr std::size_t kHeader = 64, kSection = 40;  // docs/formats.md
   const auto load = [&](std::size_t at) {
     std::uint64_t value;
@@ -76,7 +76,7 @@ inline void seal(std::span<std::byte> bytes) {
   for (std::size_t at = kHeader; at < kHeader + sections * kSection; at += kSection) {
     const std::uint64_t offset = load(at + 16), size = load(at + 24);
     if (offset > bytes.size() || size > bytes.size() - offset) continue;
-    if (named(at, {"lodhead\0", 8}) && size == 32) store(offset + 24, strands);
+    if (belongs && named(at, {"lodhead\0", 8}) && size == 32) store(offset + 24, strands);
     store(at + 32, io::xxh64(bytes.data() + offset, size));
     if (named(at, {"points\0\0", 8})) strands = load(at + 32);
   }
