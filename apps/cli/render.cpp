@@ -192,7 +192,11 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
       ->type_name("SHARE");
   verb.add_flag("--no-linking", o.no_linking, "link: missed pixels of strands stay empty");
   verb.add_flag("--no-filter", o.no_filter, "link, swr: hair is not smoothed along its strands");
-  verb.add_flag("--no-lod", o.no_lod, "swr: all strands and points of hair meshes, however small they are on the screen");
+  verb.add_flag("--no-lod", o.no_lod,
+                "All strands, however small they are on the screen: no thick hairs, and hair meshes whole (swr)");
+  verb.add_option("--lod-pixels", o.lod_pixels, "Widest thick hairs of grooms that have them (pelage lod build), pixels")
+      ->check(CLI::Range(0.1, 64.0))
+      ->type_name("PIXELS");
   verb.add_flag("--no-occlusion", o.no_occlusion, "swr: baked occlusion of hair meshes does not dim the light of the probe");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')

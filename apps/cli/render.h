@@ -24,7 +24,7 @@ struct RenderOptions {
   std::optional<std::string> stereo;  // meters
   std::optional<float> kernel_size, kernel_radius, depth_sigma;
   std::optional<int> samples, frames, subdivisions, opacity_map_size;
-  std::optional<float> exposure, fov, turn, orbit, convergence, width_scale, environment_rotation;
+  std::optional<float> lod_pixels, exposure, fov, turn, orbit, convergence, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;

@@ -4,6 +4,7 @@
 #include <pelage/grow.h>
 #include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
+#include <pelage/lod.h>
 
 #include <algorithm>
 #include <cmath>
@@ -109,6 +110,7 @@ void read_groom_scene(const RenderOptions& options, const Progress& progress, st
     groom.hair_mesh = std::make_shared<HairMesh>(read_hair_mesh(options.input));
   } else {
     groom.strands = std::make_shared<StrandSet>(read_strands(options.input, options.import, &report, progress));
+    groom.lod = read_chain(options.input, *groom.strands, progress);
     if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
   }
   notes = report.notes;
@@ -165,7 +167,8 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.depth_sigma) s.link.depth_sigma = *o.depth_sigma;
   if (o.no_linking) s.link.link = false;
   if (o.no_filter) s.link.filter = s.swr.filter = false;
-  if (o.no_lod) s.swr.lod = false;
+  if (o.no_lod) s.swr.lod = s.thick_hairs.on = false;
+  if (o.lod_pixels) s.thick_hairs.pixels = *o.lod_pixels;
   if (o.no_occlusion) s.swr.occlusion = false;
   if (o.view)
     s.view = by_name<View>("--view", *o.view,

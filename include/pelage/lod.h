@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -128,6 +129,11 @@ void write_lod(const std::string& path, const StrandSet& strands, const LodHiera
 /// The hierarchy of a `.pelage` file; empty() where the file has none, or is of another format. It satisfies validate(), and
 /// belongs to the strands as the file holds them: neither scaled nor turned nor repaired. Throws Error naming the section.
 LodHierarchy read_lod(const std::string& path, const Progress& progress = {});
+
+/// What GroomInstance::lod of `strands` is, which were read from the same file: null where the file has no hierarchy, or the strands are not as
+/// the file holds them (scaled, turned, repaired). Throws as read_lod() does.
+std::shared_ptr<const LodHierarchy> read_chain(const std::string& path, const StrandSet& strands,
+                                               const Progress& progress = {});
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Skinning: guides move, everything else follows.

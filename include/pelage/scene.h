@@ -94,12 +94,19 @@ struct HairMaterial {
   ArtistLobes artist;                            ///< of kSadeghi, which has no use for eta, tilt, gain and beta_longitudinal
 };
 
+struct LodHierarchy;  // <pelage/lod.h>
+
 /// A groom: strands, or a hair mesh that they are made from.
 struct GroomInstance {
   std::string name;
   std::shared_ptr<const StrandSet> strands;   ///< null where expand_hair_meshes() has not been there yet
   std::shared_ptr<const HairMesh> hair_mesh;  ///< or null. Method::kSwr draws it as it is, everything else its strands
-  float lod_lambda = 1.4f;                    ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
+  std::shared_ptr<const LodHierarchy> lod;  ///< or null: thick hairs of `strands`, drawn where clusters are small on the screen
+  /// Of `strands`, the numbers of those that are drawn, ascending; null: all. RenderSettings::thick_hairs sets it where there is `lod`.
+  std::shared_ptr<const std::vector<std::uint32_t>> only;
+  /// Where strands are pieces of thick hairs: metres, the width of all fibers that each stands for, [points of `strands`]; else null.
+  std::shared_ptr<const std::vector<float>> fiber_widths;
+  float lod_lambda = 1.4f;  ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
   HairMaterial material;
   std::shared_ptr<const Image> color_map;    ///< of a hair mesh: linear RGB over the groom's u (x) and v (y), instead of the
                                              ///< material's color; may be null
@@ -110,6 +117,11 @@ struct GroomInstance {
   Affine transform;       ///< object to world; similarity (rotation, translation, one scale)
   float width_scale = 1;  ///< multiplies every width
 };
+
+/// How many of a groom's strands are drawn.
+inline std::size_t drawn_strands(const GroomInstance& groom) {
+  return groom.only ? groom.only->size() : groom.strands->strand_count();
+}
 
 struct MeshInstance {
   std::string name;
@@ -215,6 +227,12 @@ struct SwrSettings {
   bool occlusion = true;  ///< baked occlusion dims the probe's light; false: strands see the whole sky
 };
 
+/// Level of detail of grooms with thick hairs (Huang 2025; docs/lod.md), of any method that draws strands.
+struct ThickHairSettings {
+  bool on = true;    ///< false: all strands, however small they are on the screen
+  float pixels = 2;  ///< ε_w of eq. 16: how wide thick hairs may be on the screen, 0.1…64
+};
+
 struct RenderSettings {
   int width = 1024, height = 1024;  ///< pixels, 1…16384
   Method method = Method::kMsaa;
@@ -224,6 +242,7 @@ struct RenderSettings {
   AlphaSource alpha = AlphaSource::kSamples;
   LinkSettings link;
   SwrSettings swr;
+  ThickHairSettings thick_hairs;
   View view = View::kBeauty;
   float exposure = 0;  ///< stops
   ToneMap tone_map = ToneMap::kAces;

@@ -25,7 +25,7 @@ void reserve(ScreenBlock& block, std::size_t points) {
 
 std::size_t assemble_strands(const AssembleJob& job, std::size_t first, std::size_t last, ScreenBlock& block) {
   const StrandSet& set = *job.strands;
-  PELAGE_CHECK(first < last && last <= set.strand_count());
+  PELAGE_CHECK(first < last && last <= (job.order.empty() ? set.strand_count() : job.order.size()));
   const auto points = [&](std::size_t i) {
     const std::size_t s = strand_at(job, i);
     return std::size_t{span_count(set.basis, set.offsets[s + 1] - set.offsets[s])} * job.subdivisions + 1;

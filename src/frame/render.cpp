@@ -23,6 +23,7 @@
 #include "frame/one_frame.h"
 #include "frame/sample_positions.h"
 #include "light/light.h"
+#include "lod/thick_hairs.h"
 
 namespace pelage {
 void check_settings(const RenderSettings& s) {
@@ -37,6 +38,7 @@ void check_settings(const RenderSettings& s) {
   require(!is_linking(s.method) || is_link_sample_count(s.samples), "samples", s.samples, "1, 4, 9 or 16 with method link");
   require(s.method != Method::kSwr || is_deferred_sample_count(s.samples), "samples", s.samples,
           "1, 2, 4 or 8 with method swr");
+  require(s.thick_hairs.pixels >= 0.1f && s.thick_hairs.pixels <= 64, "thick_hairs.pixels", s.thick_hairs.pixels, "0.1…64");
   require(s.swr.points >= 3 && s.swr.points <= 127, "swr.points", s.swr.points, "3…127");
   require(s.swr.radius >= 1 && s.swr.radius <= 15, "swr.radius", s.swr.radius, "1…15");
   require(s.swr.s_parallel > 0, "swr.s_parallel", s.swr.s_parallel, "a positive number");
@@ -109,19 +111,33 @@ struct PictureSequence::State {
   std::optional<LightRig> rig;
   DeferredGrooms grooms;             // of method swr, prepared once
   std::vector<MethodState> methods;  // one an eye
+  std::optional<ThickHairs> thick;
+  Scene drawn;  // where thick hairs are active: this frame's grooms
 
   explicit State(Scene s) : scene(std::move(s)), meshes(scene.meshes) {
     // Strands of hair meshes are only made where something looks at strands.
     if (draws_hair_meshes(scene.settings)) grooms = prepare_deferred(scene);
     else expand_hair_meshes(scene);
+    thick.emplace(scene);
   }
 
-  /// Made at the first call.
-  const LightRig& lights(Stages& stages) {
+  /// The scene as its levels of detail show it to the eye that `view` is of; both eyes see the same.
+  const Scene& draw(const CameraView& view, Stages& stages) {
+    if (!thick->active() || draws_hair_meshes(scene.settings)) return scene;
+    stages.run("lod", "segments", [&](const Progress&) {
+      drawn = thick->drawn(scene, view);
+      if (thick->changed()) rig.reset();  // what casts shadows is what is seen
+      return StageWork{thick->segments(), 0};
+    });
+    return drawn;
+  }
+
+  /// Of the scene as it is drawn. Made at the first call, and where levels of detail have changed.
+  const LightRig& lights(const Scene& seen, Stages& stages) {
     if (rig) return *rig;
     stages.run("light", "maps", [&](const Progress&) {
       const bool hair_meshes = draws_hair_meshes(scene.settings);
-      rig = prepare_lights(hair_meshes ? light_stand_in(scene) : scene, meshes);
+      rig = prepare_lights(hair_meshes ? light_stand_in(scene) : seen, meshes);
       if (hair_meshes) grooms.materials = {scene, grooms.meshes, *rig};
       return StageWork{rig->lights.size(), resident_bytes(*rig)};
     });
@@ -146,12 +162,13 @@ RenderResult PictureSequence::next(const Camera& camera, const Progress& progres
   Stages stages(progress);
   stages.note("groom", draws_hair_meshes(settings) ? "vertices" : "points", groom_work(scene));
   const bool beauty = settings.view == View::kBeauty;
-  const LightRig dark, &rig = beauty ? state_->lights(stages) : dark;
+  const Scene& drawn = state_->draw(make_camera_view(now[0], settings.width, settings.height), stages);
+  const LightRig dark, &rig = beauty ? state_->lights(drawn, stages) : dark;
   std::vector<FrameInputs> views;
   for (std::size_t e = 0; e < now.size(); ++e) {
     const CameraView view = make_camera_view(now[e], settings.width, settings.height);
     views.push_back(
-        {scene, state_->meshes, rig, view, draws_hair_meshes(settings) ? SegmentNumbering() : number_segments(scene, view)});
+        {drawn, state_->meshes, rig, view, draws_hair_meshes(settings) ? SegmentNumbering() : number_segments(drawn, view)});
     if (before.size() == now.size()) views[e].previous = make_camera_view(before[e], settings.width, settings.height);
   }
   state_->methods.resize(now.size());

@@ -95,6 +95,17 @@ LodHierarchy read_lod(const std::string& path, const Progress& progress) {
   return io::read_lod(io::ByteSource::open(path), progress);
 }
 
+std::shared_ptr<const LodHierarchy> read_chain(const std::string& path, const StrandSet& strands, const Progress& progress) {
+  auto lod = std::make_shared<LodHierarchy>(read_lod(path, progress));
+  if (lod->empty()) return nullptr;
+  try {
+    validate(*lod, strands, path);
+  } catch (const Error&) {
+    return nullptr;
+  }
+  return lod;
+}
+
 void write_lod(const std::string& path, const StrandSet& strands, const LodHierarchy& lod, const Progress& progress) {
   if (!path.ends_with(".pelage"))
     throw Error(path, "", "levels of detail are stored in .pelage files only", "call it name.pelage");

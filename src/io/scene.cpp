@@ -4,6 +4,7 @@
 #include <pelage/grow.h>
 #include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
+#include <pelage/lod.h>
 
 #include <filesystem>
 
@@ -73,7 +74,10 @@ class Loader {
     else if (text.hair_mesh) groom.hair_mesh = std::make_shared<HairMesh>(make_hair_mesh(*text.hair_mesh, progress_));
     else if (file_kind(ByteSource::open(file(text.file))).content == FileContent::kHairMesh)
       groom.hair_mesh = std::make_shared<HairMesh>(read_hair_mesh(file(text.file)));
-    else groom.strands = std::make_shared<StrandSet>(read_strands(file(text.file), text.import, nullptr, progress_));
+    else {
+      groom.strands = std::make_shared<StrandSet>(read_strands(file(text.file), text.import, nullptr, progress_));
+      groom.lod = read_chain(file(text.file), *groom.strands, progress_);
+    }
     groom.color_map = load_map(text.color_map, place + "/color_map");
     groom.color_along = load_map(text.color_along, place + "/color_along");
     groom.roughness_map = load_factors(text.roughness_map, place + "/roughness_map");

@@ -321,6 +321,15 @@ const Fields<SwrSettings>& swr_fields() {
   return table;
 }
 
+const Fields<ThickHairSettings>& thick_hair_fields() {
+  using T = ThickHairSettings;
+  static const Fields<T> table{
+      boolean_field("on", "Whether clusters that are small on the screen are drawn as thick hairs", &T::on),
+      number_field("pixels", "Widest thick hairs on the screen", &T::pixels, 0.1, 64),
+  };
+  return table;
+}
+
 const Fields<LinkSettings>& link_fields() {
   using L = LinkSettings;
   static const Names<LinkAlpha> alphas{
@@ -394,6 +403,8 @@ const Fields<RenderSettings>& settings_fields() {
       choice_field("alpha", "Opacity: share of covered samples, or exact area", &S::alpha, alphas),
       object_field("link", "Strand linking, of the methods link and link-taa", &S::link, link_fields()),
       object_field("swr", "Deferred software rasterization of hair meshes, of the method swr", &S::swr, swr_fields()),
+      object_field("thick_hairs", "Level of detail of grooms with thick hairs (pelage lod build)", &S::thick_hairs,
+                   thick_hair_fields()),
       choice_field("view", "What the picture shows", &S::view, views),
       number_field("exposure", "Stops", &S::exposure, -100, 100),
       choice_field("tone_map", "Curve of the display picture", &S::tone_map, tone_maps),

@@ -25,7 +25,7 @@ bool emits(const Light& light) { return light.intensity.x > 0 || light.intensity
 
 std::size_t strand_total(const Scene& scene) {
   std::size_t total = 0;
-  for (const GroomInstance& groom : scene.grooms) total += groom.strands->strand_count();
+  for (const GroomInstance& groom : scene.grooms) total += drawn_strands(groom);
   return total;
 }
 

@@ -84,7 +84,7 @@ void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, L
   Vec3 p[4];
   for (std::size_t s = 0; s < spans; ++s) {
     const std::size_t i = begin + s * stride;
-    const float from = set.width(i) * width_scale_, to = set.width(i + stride) * width_scale_;
+    const float from = width(i) * width_scale_, to = width(i + stride) * width_scale_;
     if (weights.size() == 1 && !bezier && set.basis != CurveBasis::kBSpline) {  // through the control points
       put(point(i), 0.5f * (from + to));
       continue;
@@ -106,8 +106,10 @@ std::vector<std::uint32_t> StrandLines::pick(std::size_t stride, const CameraVie
   if (stride == 1) picked = draw_order(*groom_, view);
   if (!picked.empty()) return picked;
   picked.resize((strand_count() + stride - 1) / stride);
-  for (std::size_t i = 0; i < picked.size(); ++i)
-    picked[i] = static_cast<std::uint32_t>(stride == 1 ? i : pick_strand(i * stride, stride, strand_count()));
+  for (std::size_t i = 0; i < picked.size(); ++i) {
+    const std::size_t k = stride == 1 ? i : pick_strand(i * stride, stride, strand_count());
+    picked[i] = groom_->only ? (*groom_->only)[k] : static_cast<std::uint32_t>(k);
+  }
   return picked;
 }
 

@@ -16,7 +16,7 @@ class StrandLines {
   /// O(control points), for the bounds.
   explicit StrandLines(const GroomInstance& groom);
 
-  std::size_t strand_count() const { return groom_->strands->strand_count(); }
+  std::size_t strand_count() const { return drawn_strands(*groom_); }
   const Bounds& bounds() const { return bounds_; }  ///< of the control points, world space
   float mean_span() const { return mean_span_; }    ///< metres, over at most a thousand strands
 
@@ -29,6 +29,10 @@ class StrandLines {
   static constexpr int kMaxSegments = 4;
 
  private:
+  /// Stored width of all fibers that a control point stands for.
+  float width(std::size_t point) const {
+    return groom_->fiber_widths ? (*groom_->fiber_widths)[point] : groom_->strands->width(point);
+  }
   void append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const;
 
   const GroomInstance* groom_;

@@ -84,7 +84,7 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
     const std::vector<std::uint32_t> order = draw_order(scene.grooms[g], view);
     AssembleJob job = make_assemble_job(scene, view, numbering, g);
     job.order = order;
-    parallel_for(job.strands->strand_count(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
+    parallel_for(drawn_strands(scene.grooms[g]), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
       Worker& worker = workers.local();
       std::uint64_t points = 0;
       for (std::size_t s = begin; s < end;) {
@@ -112,7 +112,7 @@ std::uint64_t raster_strands(const Scene& scene, const CameraView& view, const S
   const AnalyticCells cells = layers.analytic ? choose_cells(scene, view) : AnalyticCells();
   const bool in_cells = cells.per_pixel > 1;
   std::uint64_t strands = 0;
-  for (const GroomInstance& groom : scene.grooms) strands += groom.strands->strand_count();
+  for (const GroomInstance& groom : scene.grooms) strands += drawn_strands(groom);
   SharedProgress shared(progress, "raster", std::max<std::uint64_t>(1, in_cells ? 2 * strands : strands));
   RasterLayers in_pixels = layers;
   in_pixels.analytic = layers.analytic && !in_cells;

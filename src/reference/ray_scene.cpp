@@ -142,7 +142,8 @@ RayScene::Curves RayScene::make_curves(const GroomInstance& groom) {
   std::vector<Vec4> points;  // of all strands, phantoms included
   std::vector<Span> spans;
   std::vector<std::uint32_t> first_points;
-  for (std::uint32_t s = 0; s < set.strand_count(); ++s) {
+  for (std::size_t i = 0; i < drawn_strands(groom); ++i) {
+    const std::uint32_t s = groom.only ? (*groom.only)[i] : static_cast<std::uint32_t>(i);
     const auto first = static_cast<std::uint32_t>(points.size());
     add_world_points(groom, s, points);
     const std::uint32_t count = span_count(set.basis, set.offsets[s + 1] - set.offsets[s]);

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/nearest.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "groom/hairmesh/column_paths.h"
@@ -275,19 +274,6 @@ void check_range(const char* name, T value, T low, T high) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& hair_mesh_style_names() {
-  static const std::vector<std::string> names{"bob", "long-wavy", "curls", "afro", "ponytail", "braid"};
-  return names;
-}
-
-HairMeshStyle hair_mesh_style_from_name(const std::string& name) {
-  const std::vector<std::string>& names = hair_mesh_style_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end())
-    throw Error("hair mesh style", name, "unknown style", "did you mean \"" + nearest_name(name, names) + "\"?");
-  return static_cast<HairMeshStyle>(found - names.begin());
-}
 
 HairMesh make_hair_mesh(const HairMeshSettings& settings, const Progress& progress) {
   check_range("strands", settings.strands, 1000u, 1000000u);

@@ -1,0 +1,26 @@
+// A groom as its chosen levels of detail show it: some strands as they are, pieces of strands, and pieces of thick hairs.
+#pragma once
+
+#include <pelage/lod.h>
+#include <pelage/scene.h>
+
+#include <vector>
+
+#include "lod/choose_levels.h"
+
+namespace pelage {
+
+/// How wide a thick hair is drawn: of `fibers` fibers with diameter `fiber` that lie at random in a band of width `band`, the mean part of
+/// the band that is covered, band·(1 − (1 − fiber/band)^fibers). One fiber is as wide as itself, dense hair as its band. Metres.
+float covered_width(float band, float fiber, float fibers);
+
+/// What stands for `groom` (which has `lod`) where its segments have `levels`: the groom itself with GroomInstance::only the strands that are
+/// drawn whole; its strands in pieces; its thick hairs in pieces, each point as wide as covered_width() of the cross-section that `view`
+/// sees, with GroomInstance::fiber_widths. What is empty is left out; a groom of which all strands are drawn is returned as it is.
+///
+/// Thick hairs are Catmull-Rom curves through the knots of their B-splines, so pieces of one hair meet exactly. Pieces of strands reach from the
+/// control point before their place to the one after. The same for any number of threads. O(what is drawn).
+std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodPlace& place, const LevelBounds& bounds,
+                                       const LodLevels& levels);
+
+}  // namespace pelage

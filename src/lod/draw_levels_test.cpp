@@ -1,0 +1,245 @@
+#include "lod/draw_levels.h"
+
+#include <gtest/gtest.h>
+#include <pelage/grow.h>
+#include <pelage/render.h>
+#include <pelage/runtime.h>
+#include <pelage/trace.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "core/rng.h"
+#include "frame/camera_view.h"
+
+namespace pelage {
+namespace {
+
+constexpr std::size_t kPoints = LodHierarchy::kPoints;
+
+GroomInstance groom_with_chain(int strands = 1500) {
+  GrowSettings s = grow_defaults(HairStyle::kWavy);
+  s.strands = strands, s.points = 24;
+  GroomInstance groom;
+  auto set = std::make_shared<const StrandSet>(grow(s, mannequin_head()));
+  groom.lod = std::make_shared<const LodHierarchy>(build_lod(*set, {.levels = 3, .guides = 24, .memory_share = 5}));
+  groom.strands = set;
+  return groom;
+}
+
+CameraView view_from(Vec3 eye) {
+  Camera camera;
+  camera.eye = eye;
+  return make_camera_view(camera, 320, 240);
+}
+
+class DrawLevels : public testing::Test {
+ protected:
+  std::vector<GroomInstance> draw(const LodLevels& levels) const {
+    return draw_levels(groom_, {*groom_.lod, view_, compose(view_.world_to_camera, groom_.transform)}, bounds_, levels);
+  }
+  LodLevels all(std::size_t level) const {
+    return LodLevels(bounds_.prisms() * kLodSegments, static_cast<std::uint8_t>(level));
+  }
+  const GroomInstance groom_ = groom_with_chain();
+  const LodHierarchy& lod_ = *groom_.lod;
+  const LevelBounds bounds_{lod_};
+  const CameraView view_ = view_from({1, 0.3f, 4});
+};
+
+// Throws of fibers into a band: the mean share that at least one of them covers.
+TEST(CoveredWidth, IsWhatRandomFibersCover) {
+  Rng rng(3, 1);
+  for (const int fibers : {1, 3, 20}) {
+    constexpr float kBand = 1, kFiber = 0.07f;
+    constexpr int kThrows = 4000, kPlaces = 50;
+    int covered = 0;
+    for (int t = 0; t < kThrows; ++t) {
+      std::vector<float> at;
+      for (int f = 0; f < fibers; ++f) at.push_back(rng.uniform() * kBand);
+      for (int p = 0; p < kPlaces; ++p)  // the band has no ends: those of real ones are uneven anyway
+        covered += std::any_of(at.begin(), at.end(), [&](float x) {
+          const float apart = std::fabs(x - (static_cast<float>(p) + 0.5f) / kPlaces);
+          return std::fmin(apart, kBand - apart) < kFiber / 2;
+        });
+    }
+    EXPECT_NEAR(covered_width(kBand, kFiber, static_cast<float>(fibers)), covered / float{kThrows * kPlaces}, 0.005f) << fibers;
+  }
+}
+
+TEST(CoveredWidth, OneFiberIsAsWideAsItselfAndDenseHairAsItsBand) {
+  EXPECT_FLOAT_EQ(covered_width(0.01f, 1e-4f, 1), 1e-4f);
+  EXPECT_FLOAT_EQ(covered_width(0.01f, 1e-4f, 10000), 0.01f);
+  EXPECT_FLOAT_EQ(covered_width(1e-4f, 2e-4f, 5), 1e-4f);
+  EXPECT_FLOAT_EQ(covered_width(0, 2e-4f, 1), 2e-4f);
+}
+
+TEST_F(DrawLevels, AllStrandsAreTheGroomItself) {
+  const auto drawn = draw(all(lod_.levels()));
+  ASSERT_EQ(drawn.size(), 1u);
+  EXPECT_EQ(drawn[0].strands, groom_.strands);
+  EXPECT_EQ(drawn[0].only, nullptr);
+}
+
+// Through the knots of the B-spline, with all fibers of the groom on each level.
+TEST_F(DrawLevels, EveryLevelStandsForAllFibers) {
+  for (std::size_t l = 0; l < lod_.levels(); ++l) {
+    const auto drawn = draw(all(l));
+    ASSERT_EQ(drawn.size(), 1u);
+    const StrandSet& set = *drawn[0].strands;
+    validate(set, "test");
+    ASSERT_EQ(set.strand_count(), lod_.level(l).size());
+    ASSERT_EQ(drawn[0].fiber_widths->size(), set.point_count());
+    double fibers = 0;
+    for (std::size_t s = 0; s < set.strand_count(); ++s) {
+      const std::size_t h = lod_.level_offsets[l] + s;
+      const Vec3* c = &lod_.centers[h * kPoints];
+      ASSERT_EQ(set.points[s * kPoints], c[0]);
+      ASSERT_LT(length(set.points[s * kPoints + 7] - (c[6] + c[7] * 4.f + c[8]) / 6.f), 1e-6f);
+      const float all_widths = (*drawn[0].fiber_widths)[s * kPoints + 7], one = 2 * lod_.radii[h * kPoints + 7];
+      fibers += static_cast<double>(all_widths / one);
+      ASSERT_LE(set.widths[s * kPoints + 7], all_widths * 1.0001f) << "they can only hide each other";
+    }
+    EXPECT_NEAR(fibers, static_cast<double>(groom_.strands->strand_count()), 1);
+  }
+}
+
+// Half of the prisms by strands, the other half thick: nothing twice, nothing lost.
+TEST_F(DrawLevels, WholeStrandsAreOnlyThoseOfTheirPrisms) {
+  LodLevels levels = all(lod_.levels());
+  std::size_t thick = 0, whole = 0;
+  for (std::size_t p = 0; p < bounds_.prisms(); ++p) {
+    if (p % 2 == 0) std::fill_n(levels.begin() + static_cast<std::ptrdiff_t>(p * kLodSegments), kLodSegments, 0);
+    (p % 2 == 0 ? thick : whole) += p % 2 == 0 ? 1 : lod_.hairs[p].fibers;
+  }
+  const auto drawn = draw(levels);
+  ASSERT_EQ(drawn.size(), 2u);
+  EXPECT_EQ(drawn_strands(drawn[0]), whole);
+  EXPECT_EQ(drawn[1].strands->strand_count(), thick);
+  const std::set<std::uint32_t> kept(drawn[0].only->begin(), drawn[0].only->end());
+  for (std::size_t p = 0; p < bounds_.prisms(); ++p)
+    for (std::uint32_t i = 0; i < lod_.hairs[p].fibers; ++i)
+      ASSERT_EQ(kept.count(lod_.order[lod_.hairs[p].first_strand + i]), p % 2);
+}
+
+// A strand that turns into thick hair: its piece starts at or before its place and ends at or behind it, and no farther than a span.
+TEST_F(DrawLevels, PiecesOfStrandsCoverTheirPart) {
+  LodLevels levels = all(lod_.levels());
+  for (std::size_t p = 0; p < bounds_.prisms(); ++p)
+    for (std::size_t k = 0; k < kLodSegments; ++k)
+      if (k < 4 || k >= 9) levels[p * kLodSegments + k] = 1;
+  const auto drawn = draw(levels);
+  ASSERT_EQ(drawn.size(), 2u);
+  const StrandSet &pieces = *drawn[0].strands, &whole = *groom_.strands;
+  validate(pieces, "test");
+  ASSERT_EQ(pieces.strand_count(), whole.strand_count());
+  for (std::size_t s = 0; s < pieces.strand_count(); ++s) {
+    const std::size_t of = lod_.order[s];
+    std::vector<float> at{0};
+    for (std::size_t i = whole.offsets[of] + 1; i < whole.offsets[of + 1]; ++i)
+      at.push_back(at.back() + length(whole.points[i] - whole.points[i - 1]));
+    const auto place = [&](Vec3 p) {
+      for (std::size_t i = 0; i < at.size(); ++i)
+        if (whole.points[whole.offsets[of] + i] == p) return i;
+      return at.size();
+    };
+    const std::size_t first = place(pieces.points[pieces.offsets[s]]), last = place(pieces.points[pieces.offsets[s + 1] - 1]);
+    ASSERT_LT(last, at.size());
+    ASSERT_LE(at[first], at.back() * 4 / 15);
+    ASSERT_GT(at[first + 1], at.back() * 4 / 15);
+    ASSERT_GE(at[last], at.back() * 9 / 15);
+    ASSERT_LT(at[last - 1], at.back() * 9 / 15);
+  }
+  const StrandSet& hairs = *drawn[1].strands;
+  EXPECT_EQ(hairs.strand_count(), 2 * lod_.level(1).size());
+  EXPECT_EQ(hairs.offsets[1], 5u);
+  EXPECT_EQ(hairs.offsets[2], 5u + 7u);
+}
+
+TEST_F(DrawLevels, AnyNumberOfThreadsDrawsTheSame) {
+  LodLevels levels = all(0);
+  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = static_cast<std::uint8_t>((i / 5) % (lod_.levels() + 1));
+  set_thread_count(1);
+  const auto one = draw(levels);
+  set_thread_count(3);
+  const auto three = draw(levels);
+  set_thread_count(0);
+  ASSERT_EQ(one.size(), three.size());
+  for (std::size_t g = 0; g < one.size(); ++g) {
+    EXPECT_EQ(one[g].strands->points, three[g].strands->points);
+    EXPECT_EQ(one[g].strands->widths, three[g].strands->widths);
+  }
+}
+
+/// Every third strand, told by GroomInstance::only or by leaving out the others.
+Scene every_third(bool by_only) {
+  GrowSettings s = grow_defaults(HairStyle::kCurly);
+  s.strands = 300, s.points = 16;
+  auto all = std::make_shared<StrandSet>(grow(s, mannequin_head()));
+  all->widths = {0.002f}, all->colors.clear();
+  Scene scene;
+  scene.grooms.resize(1);
+  std::vector<std::uint32_t> numbers;
+  auto some = std::make_shared<StrandSet>();
+  some->basis = all->basis, some->widths = all->widths, some->offsets = {0};
+  for (std::uint32_t i = 1; i < all->strand_count(); i += 3) {
+    numbers.push_back(i);
+    for (std::uint32_t p = all->offsets[i]; p < all->offsets[i + 1]; ++p) some->points.push_back(all->points[p]);
+    some->offsets.push_back(static_cast<std::uint32_t>(some->points.size()));
+  }
+  if (by_only) {
+    scene.grooms[0].strands = all;
+    scene.grooms[0].only = std::make_shared<const std::vector<std::uint32_t>>(numbers);
+  } else {
+    scene.grooms[0].strands = some;
+  }
+  scene.camera.eye = {0, 0, 1.6f}, scene.camera.target = {0, -0.1f, 0};
+  scene.settings.width = scene.settings.height = 96;
+  scene.settings.samples = 4, scene.settings.subdivisions = 2;
+  scene.lights.push_back({});
+  return scene;
+}
+
+double light_of(const Image& image) {
+  double sum = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) sum += i % 4 == 3 ? 0 : static_cast<double>(image.pixels[i]);
+  return sum;
+}
+
+TEST(Only, StrandsThatAreLeftOutAreNotThere) {
+  Scene told = every_third(true), made = every_third(false);
+  TraceSettings settings;
+  settings.samples = 2;
+  EXPECT_EQ(trace(told, settings).linear.pixels, trace(made, settings).linear.pixels);
+  told.settings.background = made.settings.background = {};
+  const double light = light_of(render(made).linear);
+  EXPECT_NEAR(light_of(render(told).linear) / light, 1, 0.02) << "maps of the light reach as far as all strands";
+  Scene all = told;
+  all.grooms[0].only = nullptr;
+  EXPECT_GT(std::fabs(light_of(render(all).linear) / light - 1), 0.2);
+  told.settings.view = made.settings.view = View::kDepth;
+  EXPECT_EQ(render(told).linear.pixels, render(made).linear.pixels);
+}
+
+// A picture from far away: thick hairs cover as much as their strands.
+TEST(ThickHairs, KeepCoverageFarAway) {
+  Scene scene;
+  scene.grooms.push_back(groom_with_chain(6000));
+  scene.settings.width = scene.settings.height = 256;
+  scene.settings.samples = 16, scene.settings.view = View::kCoverage;
+  const auto sum = [&](float distance, bool on) {
+    scene.camera.eye = {0.3f * distance, 0, distance}, scene.camera.target = {0, -0.1f, 0}, scene.camera.fov_y = 0.7f;
+    scene.settings.thick_hairs.on = on;
+    const RenderResult picture = render(scene);
+    double total = 0;
+    for (std::size_t p = 0; p < picture.linear.pixels.size(); p += static_cast<std::size_t>(picture.linear.channel_count()))
+      total += static_cast<double>(picture.linear.pixels[p]);
+    return total;
+  };
+  for (const float distance : {4.f, 12.f, 40.f}) EXPECT_NEAR(sum(distance, true) / sum(distance, false), 1, 0.03) << distance;
+}
+
+}  // namespace
+}  // namespace pelage

@@ -1,0 +1,54 @@
+#include "lod/thick_hairs.h"
+
+#include <iterator>
+#include <utility>
+
+#include "core/check.h"
+#include "frame/camera_view.h"
+#include "lod/draw_levels.h"
+
+namespace pelage {
+namespace {
+
+std::uint64_t spans_of(const GroomInstance& groom) {
+  const StrandSet& set = *groom.strands;
+  const std::uint64_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
+  if (!groom.only) return (set.point_count() - set.strand_count()) / stride;
+  std::uint64_t spans = 0;
+  for (const std::uint32_t s : *groom.only) spans += (set.offsets[s + 1] - set.offsets[s] - 1) / stride;
+  return spans;
+}
+
+}  // namespace
+
+ThickHairs::ThickHairs(const Scene& scene) {
+  if (!scene.settings.thick_hairs.on) return;
+  for (std::size_t g = 0; g < scene.grooms.size(); ++g)
+    if (scene.grooms[g].lod && scene.grooms[g].strands) grooms_.push_back({g, LevelBounds(*scene.grooms[g].lod), {}});
+}
+
+Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
+  PELAGE_CHECK(active());
+  Scene drawn = scene;
+  drawn.grooms.clear(), changed_ = false, segments_ = 0;
+  auto next = grooms_.begin();
+  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
+    const GroomInstance& groom = scene.grooms[g];
+    if (next == grooms_.end() || next->number != g) {
+      drawn.grooms.push_back(groom);
+      continue;
+    }
+    const LodPlace place{*groom.lod, view, compose(view.world_to_camera, groom.transform)};
+    LodLevels levels = choose_levels(place, next->bounds, scene.settings.thick_hairs.pixels, next->levels);
+    changed_ = changed_ || levels != next->levels;
+    next->levels = std::move(levels);
+    std::vector<GroomInstance> pieces = draw_levels(groom, place, next->bounds, next->levels);
+    std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
+    ++next;
+  }
+  for (const GroomInstance& groom : drawn.grooms)
+    if (groom.strands) segments_ += spans_of(groom);
+  return drawn;
+}
+
+}  // namespace pelage

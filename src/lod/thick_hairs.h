@@ -1,0 +1,42 @@
+// The grooms of a scene with their levels of detail, from frame to frame.
+#pragma once
+
+#include <pelage/scene.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "frame/frame.h"
+#include "lod/choose_levels.h"
+
+namespace pelage {
+
+/// Draws grooms that have thick hairs as their size on the screen asks for, and remembers the levels, for hysteresis. Refers to the
+/// scene's grooms: keep them alive.
+class ThickHairs {
+ public:
+  /// Does nothing where settings.thick_hairs is off or no groom has `lod`.
+  explicit ThickHairs(const Scene& scene);
+
+  bool active() const { return !grooms_.empty(); }
+
+  /// `scene` with its grooms as `view` shows them. Where active(); the scene must be the one that this was made for.
+  Scene drawn(const Scene& scene, const CameraView& view);
+
+  bool changed() const { return changed_; }             ///< whether the last call chose other levels than the one before
+  std::uint64_t segments() const { return segments_; }  ///< of the last call: spans of what is drawn
+
+ private:
+  struct Groom {
+    std::size_t number;  // in the scene
+    LevelBounds bounds;
+    LodLevels levels;
+  };
+  std::vector<Groom> grooms_;
+  bool changed_ = false;
+  std::uint64_t segments_ = 0;
+};
+
+}  // namespace pelage
