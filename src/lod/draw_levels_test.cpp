@@ -13,6 +13,7 @@
 
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "light/strand_lines.h"
 
 namespace pelage {
 namespace {
@@ -221,6 +222,18 @@ TEST(Only, StrandsThatAreLeftOutAreNotThere) {
   EXPECT_GT(std::fabs(light_of(render(all).linear) / light - 1), 0.2);
   told.settings.view = made.settings.view = View::kDepth;
   EXPECT_EQ(render(told).linear.pixels, render(made).linear.pixels);
+}
+
+// Maps of large grooms are drawn from one strand in `stride`.
+TEST(Only, MapsOfLightPickFromThoseThatAreDrawn) {
+  const Scene scene = every_third(true);
+  const StrandLines lines(scene.grooms[0]);
+  EXPECT_EQ(lines.strand_count(), scene.grooms[0].only->size());
+  for (const std::size_t stride : {1u, 5u}) {
+    const std::vector<std::uint32_t> picked = lines.pick(stride, view_from({0, 0, 2}));
+    EXPECT_EQ(picked.size(), (scene.grooms[0].only->size() + stride - 1) / stride);
+    for (const std::uint32_t s : picked) EXPECT_EQ(s % 3, 1u);
+  }
 }
 
 // A picture from far away: thick hairs cover as much as their strands.
