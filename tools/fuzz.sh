@@ -21,7 +21,7 @@ for target in "${targets[@]}"; do
   log=$build/findings/$target.log
   # One thread: the readers' own parallelism would only slow tiny inputs down.
   if UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 nice $build/tests/fuzz/fuzz_$target -max_total_time=$seconds \
-      -max_len=4096 -rss_limit_mb=1024 -timeout=25 -artifact_prefix=$build/findings/$target- $build/corpus/$target > $log 2>&1; then
+      -max_len=8192 -rss_limit_mb=1024 -timeout=25 -artifact_prefix=$build/findings/$target- $build/corpus/$target > $log 2>&1; then
     echo "$target: $(grep -o 'Done.*' $log | tail -1)"
   else
     echo "$target: FINDING, see $log"

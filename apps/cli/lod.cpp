@@ -62,6 +62,10 @@ void build(const BuildVerb& verb) {
   }
   fmt::print("{}: {} strands, {} levels of thick hairs in {:.1f} s\n", verb.out, groom.strand_count(), lod.levels(), seconds);
   for (const std::string& row : lod_rows(lod_json(lod, groom))) fmt::print("  {}\n", row);
+  const bool more_to_divide = summarize(lod).back().most_fibers > 1;
+  if (lod.levels() < verb.settings.levels && more_to_divide)
+    fmt::print("  a finer level would take more than {:.0f} % of the groom's memory; --memory-share allows it\n",
+               100 * verb.settings.memory_share);
 }
 
 void extract(const ExtractVerb& verb) {

@@ -36,6 +36,14 @@ TEST_F(CliLod, BuildsAChainThatInfoLists) {
   EXPECT_THAT(run("info hair.pelage").out, testing::Not(HasSubstr("thick hairs")));
 }
 
+TEST_F(CliLod, SaysThatMemoryEndsTheChain) {
+  make_hair();
+  EXPECT_THAT(run("lod build hair.pelage -o lod.pelage --guides 12 --memory-share 0.8").out,
+              AllOf(HasSubstr("80 % of the groom's memory"), HasSubstr("--memory-share")));
+  EXPECT_THAT(run("lod build hair.pelage -o lod.pelage --guides 12 --memory-share 50 --levels 2").out,
+              testing::Not(HasSubstr("--memory-share")));
+}
+
 TEST_F(CliLod, ExtractsALevel) {
   make_hair();
   ASSERT_EQ(run("lod build hair.pelage -o lod.pelage --guides 12 --memory-share 20").status, 0);
