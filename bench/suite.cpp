@@ -9,6 +9,7 @@ void add_assemble_cases(Suite& suite);
 void add_raster_cases(Suite& suite);
 void add_light_cases(Suite& suite);
 void add_shade_cases(Suite& suite);
+void add_aggregate_cases(Suite& suite);
 void add_metrics_cases(Suite& suite);
 void add_filter_cases(Suite& suite);
 void add_link_cases(Suite& suite);
@@ -26,6 +27,7 @@ Suite all_cases() {
   add_raster_cases(suite);
   add_light_cases(suite);
   add_shade_cases(suite);
+  add_aggregate_cases(suite);
   add_metrics_cases(suite);
   add_filter_cases(suite);
   add_link_cases(suite);

@@ -1,6 +1,8 @@
 #include "reference/aggregate_study.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace pelage {
@@ -95,6 +97,7 @@ std::vector<AggregateModel> aggregate_models() {
           {"huang-no-a1plus", Kind::kHuang, Crossings::kHuang, no_side},
           {"huang-no-s", Kind::kHuang, Crossings::kHuang, no_shadow},
           {"huang-damped", Kind::kHuang, Crossings::kHuang, damped},
+          {"huang-fitted", Kind::kHuang, Crossings::kHuang, kernel::scatter_terms_fitted()},
           {"zhu2023", Kind::kZhu2023, Crossings::kHuang, all},
           {"zhu2023-buffon", Kind::kZhu2023, Crossings::kBuffon, all},
           {"zhu2023-narrow", Kind::kZhu2023Narrow, Crossings::kHuang, all},
@@ -146,6 +149,17 @@ ProfileErrors errors_of(const AggregateProfiles& model, const AggregateProfiles&
     return sum > 0 ? difference / sum : 0;
   };
   return {error(model.azimuth, truth.azimuth), error(model.lit, truth.lit), error(model.through, truth.through)};
+}
+
+ProfileErrors best_of_zhu_2023(const AggregatePanel& panel, const AggregateProfiles& truth) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  ProfileErrors best{kNone, kNone, kNone};
+  for (const AggregateModel& m : aggregate_models()) {
+    if (m.kind != AggregateModel::Kind::kZhu2023 && m.kind != AggregateModel::Kind::kZhu2023Narrow) continue;
+    const ProfileErrors e = errors_of(profiles_of(model_energies(panel, m)), truth);
+    best = {std::min(best.azimuth, e.azimuth), std::min(best.lit, e.lit), std::min(best.through, e.through)};
+  }
+  return best;
 }
 
 }  // namespace pelage

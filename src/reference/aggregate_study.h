@@ -28,7 +28,8 @@ struct AggregateModel {
   kernel::ScatterAggregateTerms terms = kernel::scatter_terms_huang();  ///< of kHuang
 };
 
-/// Ours, the paper's with each formula for n, with and without A_1+ and S, and the four readings of Zhu 2023.
+/// Ours; the paper's with each formula for n, without A_1+, without S, with the densities of dual scattering (d_F = d_B = 0.7) and with
+/// fitted constants; the four readings of Zhu 2023.
 std::vector<AggregateModel> aggregate_models();
 
 kernel::ScatterBundle bundle_of(const ClusterShape& shape, AggregateModel::Crossings crossings);
@@ -48,5 +49,8 @@ struct ProfileErrors {
   double azimuth = 0, lit = 0, through = 0;
 };
 ProfileErrors errors_of(const AggregateProfiles& model, const AggregateProfiles& truth);
+
+/// Of each profile the least error that a reading of Zhu 2023 has.
+ProfileErrors best_of_zhu_2023(const AggregatePanel& panel, const AggregateProfiles& truth);
 
 }  // namespace pelage

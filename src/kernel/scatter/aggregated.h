@@ -104,6 +104,17 @@ PELAGE_FN ScatterAggregateTerms scatter_terms_huang() {
   return t;
 }
 
+// The same with constants fitted to traced bundles (with the paper's n; docs/derivations/aggregated_scattering.md).
+PELAGE_FN ScatterAggregateTerms scatter_terms_fitted() {
+  ScatterAggregateTerms t;
+  t.forward = Float(0.58f);
+  t.back = Float(0.61f);
+  t.side = Float(0.12f);
+  t.masked = Float(0.17f);
+  t.shadow = Float(1.0f);
+  return t;
+}
+
 // Energies of the backward paths of one channel.
 struct ScatterBackPaths {
   Float one;    // A_1, F^i B F^i: Zinke 2008, eq. 11

@@ -4,7 +4,7 @@
 //   ScatterDirection d = scatter_sample_aggregate_marschner(a, c, u)
 //   Float p = scatter_pdf_aggregate_marschner(a, c, d.sin_i, d.cos_i, d.phi)      per solid angle, all parts together
 
-const float kAggregateMaxWeight = 8.0f;  // value over density of a direction that is drawn; luminance, ours
+const float kAggregateMaxWeight = 3.0f;  // value over density of a direction that is drawn; luminance, ours
 
 struct ScatterAggregateChoice {
   ScatterChoice near;  // of the lobes within a part; each sums to 1
