@@ -366,18 +366,35 @@ def figure5(shop, report, options):
     scene, groom = before(shop, "curls", options.strands, 1000, options.size)
     jobs = {"1 sample": ["--no-filter"], "touched": ["--method", "msaa", "--view", "coverage", "--spp", "16"], "1 + filter": [], "MSAA 8": ["--spp", "8"],
             f"{options.reference_spp} samples": ["--method", "ssaa", "--spp", str(options.reference_spp)]}
-    lines = [[] for _ in FIGURE5]
-    for name, arguments in jobs.items():
-        picture = shoot(shop, f"figure5-{name.replace(' ', '-').replace('+', 'and')}", scene, groom, *arguments)
-        for line, place in zip(lines, FIGURE5):
-            tile = cropped(shop, picture, place, options.tile // 10, 6)
+    pictures = {name: shoot(shop, f"figure5-{name.replace(' ', '-').replace('+', 'and')}", scene, groom, *arguments)
+                for name, arguments in jobs.items()}
+    size = options.tile // 10
+    places = (loneliest(read_png(shop.folder / pictures["touched"]), size), LOCK_END)
+    lines = [[] for _ in places]
+    for name, picture in pictures.items():
+        for line, place in zip(lines, places):
+            tile = cropped(shop, picture, place, size, 6)
             line.append(tile.threshold() if name == "touched" else tile)
     report.text("Figure 5: lone strands", heading=True)
     save(shop, report, "figure5.png", lines, f"Curls, {options.tile // 10} pixels magnified six times: {', '.join(jobs)}. Touched: pixels of which any of "
          "16 samples hits hair, all that the conservative layer can tell.")
 
 
-FIGURE5 = ((0.406, 0.215), (0.604, 0.745))  # places, shares of the picture
+LOCK_END = (0.604, 0.745)  # where locks thin out; shares of the picture
+
+
+def loneliest(picture, size):
+    """Middle of the square of `size` pixels with the most lone ones: not black, with at most three neighbors that are not."""
+    touched = [[any(row[i:i + 3]) for i in range(0, len(row), 3)] for row in picture.rows]
+    lone, step = {}, size // 2
+    for y in range(1, picture.height - 1):
+        above, row, below = touched[y - 1:y + 2]
+        for x in range(1, picture.width - 1):
+            if row[x] and sum(above[x - 1:x + 2]) + row[x - 1] + row[x + 1] + sum(below[x - 1:x + 2]) <= 3:
+                cell = x // step, y // step
+                lone[cell] = lone.get(cell, 0) + 1
+    corner = max(sorted(lone), key=lambda c: sum(lone.get((c[0] + i, c[1] + j), 0) for i in (0, 1) for j in (0, 1)), default=(0, 0))
+    return (corner[0] + 1) * step / picture.width, (corner[1] + 1) * step / picture.height
 
 
 def figure6(shop, report, options):
