@@ -111,6 +111,9 @@ void read_groom_scene(const RenderOptions& options, const Progress& progress, st
   } else {
     groom.strands = std::make_shared<StrandSet>(read_strands(options.input, options.import, &report, progress));
     groom.lod = read_chain(options.input, *groom.strands, progress);
+    if (!groom.lod && !read_lod(options.input).empty())
+      report.notes.push_back(
+          "its thick hairs are left out: the groom is not as the file holds it (scaled, turned or repaired)");
     if (!groom.strands->colors.empty()) groom.material.color_source = HairMaterial::ColorSource::kStrand;
   }
   notes = report.notes;

@@ -13,12 +13,6 @@ namespace {
 
 constexpr std::size_t kPoints = LodHierarchy::kPoints;
 
-/// Direction of the hair at control point k, of any length.
-Vec3 along(const LodHierarchy& lod, std::size_t hair, std::size_t k) {
-  const Vec3* c = &lod.centers[hair * kPoints];
-  return c[std::min(k + 1, kPoints - 1)] - c[k > 0 ? k - 1 : 0];
-}
-
 /// Pixels that hair `hair` is wide at control point k; INFINITY before the near plane.
 float pixels_wide(const LodPlace& place, std::size_t hair, std::size_t k) {
   const LodHierarchy& lod = place.lod;
@@ -27,7 +21,8 @@ float pixels_wide(const LodPlace& place, std::size_t hair, std::size_t k) {
   if (!(center.z >= place.view.near_plane)) return INFINITY;
   const auto turned = [&](Vec3 v) { return transform_vector(place.to_camera, v); };
   const Vec3 to_eye = place.view.perspective ? center * -1.f : Vec3(0, 0, -1);
-  const SectionExtent seen = section_extent(turned(lod.major[i]), turned(lod.minor[i]), turned(along(lod, hair, k)), to_eye);
+  const SectionExtent seen =
+      section_extent(turned(lod.major[i]), turned(lod.minor[i]), turned(hair_direction(lod, hair, k)), to_eye);
   return seen.width * pixels_per_metre(place.view, center.z);
 }
 
@@ -72,6 +67,11 @@ float narrowest(Vec3 major, Vec3 minor, Vec3 along) {
 
 }  // namespace
 
+Vec3 hair_direction(const LodHierarchy& lod, std::size_t hair, std::size_t k) {
+  const Vec3* c = &lod.centers[hair * kPoints];
+  return c[std::min(k + 1, kPoints - 1)] - c[k > 0 ? k - 1 : 0];
+}
+
 SectionExtent section_extent(Vec3 major, Vec3 minor, Vec3 along, Vec3 to_eye) {
   const auto reach = [&](Vec3 axis) { return 2 * std::hypot(dot(major, axis), dot(minor, axis)); };
   const Vec3 side = cross(along, to_eye);
@@ -102,7 +102,7 @@ LevelBounds::LevelBounds(const LodHierarchy& lod) : prisms_(lod.empty() ? 0 : lo
           const std::size_t i = h * kPoints + k;
           box.extend(lod.centers[i]);
           bound.widest = std::max({bound.widest, 2 * length(lod.major[i]), 2 * length(lod.minor[i])});
-          bound.narrowest = std::max(bound.narrowest, narrowest(lod.major[i], lod.minor[i], along(lod, h, k)));
+          bound.narrowest = std::max(bound.narrowest, narrowest(lod.major[i], lod.minor[i], hair_direction(lod, h, k)));
         }
         bound.lower = box.lower, bound.upper = box.upper;
       }

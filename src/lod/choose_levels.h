@@ -26,6 +26,9 @@ struct SectionExtent {
 /// length. A hair that is seen from its end shows its longer axis.
 SectionExtent section_extent(Vec3 major, Vec3 minor, Vec3 along, Vec3 to_eye);
 
+/// Direction of a thick hair at control point k, of any length.
+Vec3 hair_direction(const LodHierarchy& lod, std::size_t hair, std::size_t k);
+
 /// Where a groom's chain stands in a scene: what choosing needs of it.
 struct LodPlace {
   const LodHierarchy& lod;

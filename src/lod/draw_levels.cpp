@@ -36,7 +36,7 @@ void copy_attributes(const StrandSet& from, std::size_t s, StrandSet& to) {
   if (!from.group.empty()) to.group.push_back(from.group[s]);
 }
 
-/// The part of a strand in which its curve lies at shares `from` to `to` of its length, and what it takes to whole spans.
+/// The part of a strand at shares `from` to `to` of the length of its control polygon, and what it takes to whole spans.
 void append_strand(const StrandSet& set, std::size_t strand, float from, float to, StrandSet& pieces) {
   const std::size_t begin = set.offsets[strand], end = set.offsets[strand + 1], count = end - begin;
   const std::size_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
@@ -102,8 +102,8 @@ class PieceMaker {
       const std::size_t i = std::size_t{h} * kPoints + k;
       const bool inside = k > 0 && k + 1 < kPoints;
       const Vec3 knot = inside ? (c[k - 1] + c[k] * 4.f + c[k + 1]) / 6.f : c[k];
-      const Vec3 along = c[std::min(k + 1, kPoints - 1)] - c[k > 0 ? k - 1 : 0];
-      const float band = section_extent(lod.major[i], lod.minor[i], along, to_eye(knot)).width, fiber = 2 * lod.radii[i];
+      const float band = section_extent(lod.major[i], lod.minor[i], hair_direction(lod, h, k), to_eye(knot)).width,
+                  fiber = 2 * lod.radii[i];
       out.hairs.points.push_back(knot), out.hairs.widths.push_back(covered_width(band, fiber, fibers));
       out.fiber_widths.push_back(fiber * fibers);
     }

@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "frame/camera_view.h"
+#include "frame/curve_basis.h"
 #include "lod/draw_levels.h"
 
 namespace pelage {
@@ -12,10 +13,11 @@ namespace {
 
 std::uint64_t spans_of(const GroomInstance& groom) {
   const StrandSet& set = *groom.strands;
-  const std::uint64_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
-  if (!groom.only) return (set.point_count() - set.strand_count()) / stride;
   std::uint64_t spans = 0;
-  for (const std::uint32_t s : *groom.only) spans += (set.offsets[s + 1] - set.offsets[s] - 1) / stride;
+  for (std::size_t i = 0; i < drawn_strands(groom); ++i) {
+    const std::size_t s = groom.only ? (*groom.only)[i] : i;
+    spans += span_count(set.basis, set.offsets[s + 1] - set.offsets[s]);
+  }
   return spans;
 }
 
