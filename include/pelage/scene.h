@@ -96,6 +96,14 @@ struct HairMaterial {
 
 struct LodHierarchy;  // <pelage/lod.h>
 
+/// What pieces of thick hairs stand for, at each point of their strands: a bundle of fibers in an elliptical cross-section
+/// (Huang 2025, section 4; references.bib: Huang2025LevelOfDetail). Metres, in the space of the strands.
+struct ThickSections {
+  std::vector<Vec3> major, minor;  ///< [points] semi-axes r_A and r_B, across the hair
+  std::vector<float> fibers;       ///< [points] n_total, > 0: hairs that cross the section
+  std::vector<float> diameters;    ///< [points] of one fiber, ≥ 0
+};
+
 /// A groom: strands, or a hair mesh that they are made from.
 struct GroomInstance {
   std::string name;
@@ -104,8 +112,8 @@ struct GroomInstance {
   std::shared_ptr<const LodHierarchy> lod;  ///< or null: thick hairs of `strands`, drawn where clusters are small on the screen
   /// Of `strands`, the numbers of those that are drawn, ascending; null: all. RenderSettings::thick_hairs sets it where there is `lod`.
   std::shared_ptr<const std::vector<std::uint32_t>> only;
-  /// Where strands are pieces of thick hairs: metres, the width of all fibers that each stands for, [points of `strands`]; else null.
-  std::shared_ptr<const std::vector<float>> fiber_widths;
+  /// Of pieces of thick hairs: their cross-sections; the widths of `strands` are then what fibers cover, seen from the eye. Else null.
+  std::shared_ptr<const ThickSections> sections;
   float lod_lambda = 1.4f;  ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
   HairMaterial material;
   std::shared_ptr<const Image> color_map;    ///< of a hair mesh: linear RGB over the groom's u (x) and v (y), instead of the

@@ -31,7 +31,8 @@ class StrandLines {
  private:
   /// Stored width of all fibers that a control point stands for.
   float width(std::size_t point) const {
-    return groom_->fiber_widths ? (*groom_->fiber_widths)[point] : groom_->strands->width(point);
+    const ThickSections* thick = groom_->sections.get();
+    return thick ? thick->diameters[point] * thick->fibers[point] : groom_->strands->width(point);
   }
   void append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const;
 

@@ -22,7 +22,7 @@ struct Run {
 struct Pieces {
   std::vector<std::uint32_t> whole;  // strands
   StrandSet strands, hairs;
-  std::vector<float> fiber_widths;  // of `hairs`
+  ThickSections sections;  // of `hairs`
 };
 
 void end_strand(StrandSet& set) { set.offsets.push_back(static_cast<std::uint32_t>(set.points.size())); }
@@ -105,7 +105,9 @@ class PieceMaker {
       const float band = section_extent(lod.major[i], lod.minor[i], hair_direction(lod, h, k), to_eye(knot)).width,
                   fiber = 2 * lod.radii[i];
       out.hairs.points.push_back(knot), out.hairs.widths.push_back(covered_width(band, fiber, fibers));
-      out.fiber_widths.push_back(fiber * fibers);
+      ThickSections& sections = out.sections;
+      sections.major.push_back(lod.major[i]), sections.minor.push_back(lod.minor[i]);
+      sections.fibers.push_back(fibers), sections.diameters.push_back(fiber);
     }
     StrandSet& set = out.hairs;
     if (!lod.colors.empty()) set.colors.push_back(lod.colors[h]);
@@ -141,6 +143,11 @@ void append(const StrandSet& from, StrandSet& to) {
   append(from.guide_id, to.guide_id), append(from.group, to.group);
 }
 
+void append(const ThickSections& from, ThickSections& to) {
+  append(from.major, to.major), append(from.minor, to.minor);
+  append(from.fibers, to.fibers), append(from.diameters, to.diameters);
+}
+
 Pieces make_pieces(const PieceMaker& maker, std::size_t prisms) {
   std::vector<Pieces> parts((prisms + kPrismsPerTask - 1) / kPrismsPerTask);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -152,7 +159,7 @@ Pieces make_pieces(const PieceMaker& maker, std::size_t prisms) {
   Pieces all;
   all.strands.offsets = all.hairs.offsets = {0};
   for (const Pieces& part : parts) {
-    append(part.whole, all.whole), append(part.fiber_widths, all.fiber_widths);
+    append(part.whole, all.whole), append(part.sections, all.sections);
     append(part.strands, all.strands), append(part.hairs, all.hairs);
   }
   return all;
@@ -187,7 +194,7 @@ std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodPlac
   };
   add(pieces.strands, " (pieces)");
   if (GroomInstance* hairs = add(pieces.hairs, " (thick hairs)"))
-    hairs->fiber_widths = std::make_shared<const std::vector<float>>(std::move(pieces.fiber_widths));
+    hairs->sections = std::make_shared<const ThickSections>(std::move(pieces.sections));
   return drawn;
 }
 

@@ -16,7 +16,7 @@ float covered_width(float band, float fiber, float fibers);
 
 /// What stands for `groom` (which has `lod`) where its segments have `levels`: the groom itself with GroomInstance::only the strands that are
 /// drawn whole; its strands in pieces; its thick hairs in pieces, each point as wide as covered_width() of the cross-section that `view`
-/// sees, with GroomInstance::fiber_widths. What is empty is left out; a groom of which all strands are drawn is returned as it is.
+/// sees, with GroomInstance::sections. What is empty is left out; a groom of which all strands are drawn is returned as it is.
 ///
 /// Thick hairs are Catmull-Rom curves through the knots of their B-splines, so pieces of one hair meet exactly. Pieces of strands reach from the
 /// control point before their place to the one after. The same for any number of threads. O(what is drawn).

@@ -92,14 +92,16 @@ TEST_F(DrawLevels, EveryLevelStandsForAllFibers) {
     const StrandSet& set = *drawn[0].strands;
     validate(set, "test");
     ASSERT_EQ(set.strand_count(), lod_.level(l).size());
-    ASSERT_EQ(drawn[0].fiber_widths->size(), set.point_count());
+    ASSERT_EQ(drawn[0].sections->major.size(), set.point_count());
     double fibers = 0;
     for (std::size_t s = 0; s < set.strand_count(); ++s) {
       const std::size_t h = lod_.level_offsets[l] + s;
       const Vec3* c = &lod_.centers[h * kPoints];
       ASSERT_EQ(set.points[s * kPoints], c[0]);
       ASSERT_LT(length(set.points[s * kPoints + 7] - (c[6] + c[7] * 4.f + c[8]) / 6.f), 1e-6f);
-      const float all_widths = (*drawn[0].fiber_widths)[s * kPoints + 7], one = 2 * lod_.radii[h * kPoints + 7];
+      const ThickSections& sections = *drawn[0].sections;
+      const float all_widths = sections.diameters[s * kPoints + 7] * sections.fibers[s * kPoints + 7],
+                  one = 2 * lod_.radii[h * kPoints + 7];
       fibers += static_cast<double>(all_widths / one);
       ASSERT_LE(set.widths[s * kPoints + 7], all_widths * 1.0001f) << "they can only hide each other";
     }

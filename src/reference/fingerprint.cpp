@@ -69,14 +69,15 @@ class Fingerprint {
     add_array(s.points), add_array(s.widths), add_array(s.offsets), add_array(s.colors);
   }
   void add_one(const GroomInstance& groom) {
-    const auto& [name, strands, hair_mesh, lod, only, fiber_widths, lod_lambda, material, color_map, color_along, roughness_map,
+    const auto& [name, strands, hair_mesh, lod, only, sections, lod_lambda, material, color_map, color_along, roughness_map,
                  roughness_along, tilt_map, tilt_along, transform, width_scale] = groom;
     add(material, color_map, color_along, roughness_map, roughness_along, tilt_map, tilt_along, transform, width_scale);
     add(strands != nullptr);
     if (strands) add(*strands);
-    add(only != nullptr), add(fiber_widths != nullptr);
+    add(only != nullptr), add(sections != nullptr);
     if (only) add_array(*only);
-    if (fiber_widths) add_array(*fiber_widths);
+    if (sections)
+      add_array(sections->major), add_array(sections->minor), add_array(sections->fibers), add_array(sections->diameters);
   }
   void add_one(const TriangleMesh& m) { add_array(m.positions), add_array(m.normals), add_array(m.uv), add_array(m.triangles); }
   void add_one(const MeshInstance& instance) {
