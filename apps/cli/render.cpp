@@ -197,6 +197,11 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--lod-pixels", o.lod_pixels, "Widest thick hairs of grooms that have them (pelage lod build), pixels")
       ->check(CLI::Range(0.1, 64.0))
       ->type_name("PIXELS");
+  verb.add_option("--lod-level", o.lod_level, "One level of thick hairs everywhere, 0 the coarsest, instead of --lod-pixels")
+      ->check(CLI::Range(0, 15))
+      ->type_name("LEVEL");
+  verb.add_option("--lod-scattering", o.lod_scattering, "Thick hairs scatter as the bundle they stand for, or as one fiber")
+      ->type_name("aggregate|fiber");
   verb.add_flag("--no-occlusion", o.no_occlusion, "swr: baked occlusion of hair meshes does not dim the light of the probe");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')

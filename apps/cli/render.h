@@ -20,10 +20,11 @@ struct RenderOptions {
   std::string input, gbuffer;
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
-  std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment, environment_lighting;
+  std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment, environment_lighting,
+      lod_scattering;
   std::optional<std::string> stereo;  // meters
   std::optional<float> kernel_size, kernel_radius, depth_sigma;
-  std::optional<int> samples, frames, subdivisions, opacity_map_size;
+  std::optional<int> samples, frames, subdivisions, opacity_map_size, lod_level;
   std::optional<float> lod_pixels, exposure, fov, turn, orbit, convergence, width_scale, environment_rotation;
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;

@@ -172,6 +172,11 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.no_filter) s.link.filter = s.swr.filter = false;
   if (o.no_lod) s.swr.lod = s.thick_hairs.on = false;
   if (o.lod_pixels) s.thick_hairs.pixels = *o.lod_pixels;
+  if (o.lod_level) s.thick_hairs.level = *o.lod_level;
+  if (o.lod_scattering)
+    s.thick_hairs.scattering =
+        by_name<ThickScattering>("--lod-scattering", *o.lod_scattering,
+                                 {{"aggregate", ThickScattering::kAggregate}, {"fiber", ThickScattering::kFiber}});
   if (o.no_occlusion) s.swr.occlusion = false;
   if (o.view)
     s.view = by_name<View>("--view", *o.view,

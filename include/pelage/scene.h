@@ -235,10 +235,18 @@ struct SwrSettings {
   bool occlusion = true;  ///< baked occlusion dims the probe's light; false: strands see the whole sky
 };
 
+/// What thick hairs scatter.
+enum class ThickScattering {
+  kAggregate,  ///< as the bundle that they stand for: fibers shade each other in it (Huang 2025, section 4)
+  kFiber,      ///< as one fiber that is as wide
+};
+
 /// Level of detail of grooms with thick hairs (Huang 2025; docs/lod.md), of any method that draws strands.
 struct ThickHairSettings {
   bool on = true;    ///< false: all strands, however small they are on the screen
   float pixels = 2;  ///< ε_w of eq. 16: how wide thick hairs may be on the screen, 0.1…64
+  int level = -1;    ///< ≥ 0: this level everywhere (0 is the coarsest, finest where there are fewer); -1: by `pixels`
+  ThickScattering scattering = ThickScattering::kAggregate;
 };
 
 struct RenderSettings {

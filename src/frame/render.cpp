@@ -1,5 +1,6 @@
 // From a scene to a picture: what the pictures of a scene share, then the frames of each.
 #include <pelage/error.h>
+#include <pelage/lod.h>
 #include <pelage/render.h>
 
 #include <fmt/format.h>
@@ -38,6 +39,8 @@ void check_settings(const RenderSettings& s) {
   require(!is_linking(s.method) || is_link_sample_count(s.samples), "samples", s.samples, "1, 4, 9 or 16 with method link");
   require(s.method != Method::kSwr || is_deferred_sample_count(s.samples), "samples", s.samples,
           "1, 2, 4 or 8 with method swr");
+  require(s.thick_hairs.level >= -1 && s.thick_hairs.level < static_cast<int>(LodHierarchy::kMostLevels), "thick_hairs.level",
+          s.thick_hairs.level, "-1…15");
   require(s.thick_hairs.pixels >= 0.1f && s.thick_hairs.pixels <= 64, "thick_hairs.pixels", s.thick_hairs.pixels, "0.1…64");
   require(s.swr.points >= 3 && s.swr.points <= 127, "swr.points", s.swr.points, "3…127");
   require(s.swr.radius >= 1 && s.swr.radius <= 15, "swr.radius", s.swr.radius, "1…15");

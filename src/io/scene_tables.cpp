@@ -323,9 +323,14 @@ const Fields<SwrSettings>& swr_fields() {
 
 const Fields<ThickHairSettings>& thick_hair_fields() {
   using T = ThickHairSettings;
+  static const Names<ThickScattering> scattering{{"aggregate", ThickScattering::kAggregate},
+                                                 {"fiber", ThickScattering::kFiber}};
   static const Fields<T> table{
       boolean_field("on", "Whether clusters that are small on the screen are drawn as thick hairs", &T::on),
       number_field("pixels", "Widest thick hairs on the screen", &T::pixels, 0.1, 64),
+      integer_field("level", "The one level that is drawn, 0 the coarsest; -1: by `pixels`", &T::level, -1, 15),
+      choice_field("scattering", "What thick hairs scatter: as the bundle they stand for, or as one fiber", &T::scattering,
+                   scattering),
   };
   return table;
 }

@@ -72,15 +72,6 @@ Vec3 hair_direction(const LodHierarchy& lod, std::size_t hair, std::size_t k) {
   return c[std::min(k + 1, kPoints - 1)] - c[k > 0 ? k - 1 : 0];
 }
 
-SectionExtent section_extent(Vec3 major, Vec3 minor, Vec3 along, Vec3 to_eye) {
-  const auto reach = [&](Vec3 axis) { return 2 * std::hypot(dot(major, axis), dot(minor, axis)); };
-  const Vec3 side = cross(along, to_eye);
-  const float sine = length(side);
-  if (!(sine > 1e-6f * length(along) * length(to_eye))) return {2 * length(major), 2 * length(minor)};
-  const Vec3 across = side / sine;
-  return {reach(across), reach(normalize(cross(across, along)))};
-}
-
 LevelBounds::LevelBounds(const LodHierarchy& lod) : prisms_(lod.empty() ? 0 : lod.level(0).size()) {
   ranges_.resize(lod.levels() * prisms_), bounds_.resize(ranges_.size() * kPoints);
   for (std::size_t p = 0; p < prisms_; ++p) {
@@ -135,6 +126,10 @@ LodLevels choose_levels(const LodPlace& place, const LevelBounds& bounds, float 
     }
   });
   return chosen;
+}
+
+LodLevels one_level(const LodHierarchy& lod, std::size_t level) {
+  return LodLevels(lod.level(0).size() * kLodSegments, static_cast<std::uint8_t>(std::min(level, lod.levels() - 1)));
 }
 
 }  // namespace pelage

@@ -10,21 +10,12 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "frame/section.h"
 
 namespace pelage {
 
 /// Segments of a thick hair, of which each has a level.
 inline constexpr std::size_t kLodSegments = LodHierarchy::kPoints - 1;
-
-/// How a cross-section is seen: l_w and l_t of the paper.
-struct SectionExtent {
-  float width = 0;      ///< across the hair, facing the camera
-  float thickness = 0;  ///< along the line of sight, perpendicular to the hair
-};
-
-/// An ellipse with semi-axes `major` and `minor` (metres, any space) of a hair along `along`, seen in direction `to_eye`, both of any
-/// length. A hair that is seen from its end shows its longer axis.
-SectionExtent section_extent(Vec3 major, Vec3 minor, Vec3 along, Vec3 to_eye);
 
 /// Direction of a thick hair at control point k, of any length.
 Vec3 hair_direction(const LodHierarchy& lod, std::size_t hair, std::size_t k);
@@ -75,5 +66,8 @@ using LodLevels = std::vector<std::uint8_t>;
 LodLevels choose_levels(const LodPlace& place, const LevelBounds& bounds, float pixels,
                         std::span<const std::uint8_t> before = {});
 inline constexpr float kCoarserBelow = 0.9f;  ///< of `pixels`
+
+/// The same level everywhere; the finest where there are fewer.
+LodLevels one_level(const LodHierarchy& lod, std::size_t level);
 
 }  // namespace pelage

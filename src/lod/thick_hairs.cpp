@@ -41,7 +41,9 @@ Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
       continue;
     }
     const LodPlace place{*groom.lod, view, compose(view.world_to_camera, groom.transform)};
-    LodLevels levels = choose_levels(place, next->bounds, scene.settings.thick_hairs.pixels, next->levels);
+    const ThickHairSettings& settings = scene.settings.thick_hairs;
+    LodLevels levels = settings.level >= 0 ? one_level(*groom.lod, static_cast<std::size_t>(settings.level))
+                                           : choose_levels(place, next->bounds, settings.pixels, next->levels);
     changed_ = changed_ || levels != next->levels;
     next->levels = std::move(levels);
     std::vector<GroomInstance> pieces = draw_levels(groom, place, next->bounds, next->levels);

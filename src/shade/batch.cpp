@@ -38,10 +38,28 @@ MapConstants shadow_constants(const ShadowMap& map) {
 }  // namespace
 
 void pad(ShadeBatch& batch) {
-  for (ShadeBatch::Lanes* lanes :
-       {&batch.px, &batch.py, &batch.pz, &batch.tx, &batch.ty, &batch.tz, &batch.ex, &batch.ey, &batch.ez, &batch.absorb_r,
-        &batch.absorb_g, &batch.absorb_b, &batch.depth_shift, &batch.beta_longitudinal, &batch.beta_azimuthal, &batch.tilt,
-        &batch.table, &batch.occlusion})
+  for (ShadeBatch::Lanes* lanes : {&batch.px,
+                                   &batch.py,
+                                   &batch.pz,
+                                   &batch.tx,
+                                   &batch.ty,
+                                   &batch.tz,
+                                   &batch.ex,
+                                   &batch.ey,
+                                   &batch.ez,
+                                   &batch.absorb_r,
+                                   &batch.absorb_g,
+                                   &batch.absorb_b,
+                                   &batch.depth_shift,
+                                   &batch.beta_longitudinal,
+                                   &batch.beta_azimuthal,
+                                   &batch.tilt,
+                                   &batch.table,
+                                   &batch.fibers,
+                                   &batch.fiber_radius,
+                                   &batch.half_width,
+                                   &batch.half_depth,
+                                   &batch.occlusion})
     std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
 }
 
@@ -54,6 +72,7 @@ std::vector<LightConstants> light_constants(const LightRig& rig) {
     k.position = light.position, k.to_light = -light.direction, k.intensity = light.intensity;
     k.cos_inner = std::cos(light.inner_angle), k.cos_outer = std::cos(light.outer_angle);
     k.spread2 = prepared.spread * prepared.spread;
+    k.mean_cosine = std::exp(-0.5f * k.spread2);
     k.wide = prepared.spread > kWideSpread;
     k.only_in_view = prepared.only_in_view;
     k.opacity = opacity_constants(prepared.opacity), k.shadow = shadow_constants(prepared.shadow);
@@ -89,6 +108,13 @@ ShadeConstants shade_constants(const GroomInstance& groom, bool dual_scattering,
     k.attenuation.insert(k.attenuation.end(), table.begin(), table.end());
   }
   return k;
+}
+
+void set_bundle(const SeenBundle& bundle, ShadeBatch& batch, std::size_t i) {
+  constexpr float kNarrowest = 1e-7f;  // a bundle of fibers without width
+  batch.fibers[i] = bundle.fibers, batch.fiber_radius[i] = bundle.radius;
+  batch.half_width[i] = std::max(0.5f * bundle.extent.width, kNarrowest);
+  batch.half_depth[i] = std::max(0.5f * bundle.extent.thickness, kNarrowest);
 }
 
 HairMaterial set_finish(const ShadeConstants& k, Finish finish, ShadeBatch& batch, std::size_t i) {

@@ -11,6 +11,7 @@
 #include "frame/frame.h"
 #include "frame/dual_scattering_tables.h"
 #include "frame/material_map.h"
+#include "frame/section.h"
 
 namespace pelage {
 
@@ -28,6 +29,8 @@ struct ShadeBatch {
   alignas(64) Lanes depth_shift{};                 ///< strands between it and every light that are not there after all
   alignas(64) Lanes beta_longitudinal{}, beta_azimuthal{}, tilt{};  ///< of grooms with maps of them; see HairMaterial
   alignas(64) Lanes table{};  ///< of those: where their ForwardAttenuationTable begins, a whole number
+  alignas(64) Lanes fibers{}, fiber_radius{}, half_width{},
+      half_depth{};  ///< of thick hairs: SeenBundle; the last three in metres
   /// share of the probe's light that arrives, 0…1; 1 where none is baked
   alignas(64) Lanes occlusion = ones();
   alignas(64) Lanes r, g, b;  ///< result: radiance, W/(m²·sr)
@@ -60,8 +63,9 @@ struct LightConstants {
   Light::Type type = Light::Type::kDirectional;
   Vec3 position, to_light, intensity;
   float cos_inner = 0, cos_outer = 0;
-  float spread2 = 0;  ///< radians², variance of its directions
-  bool wide = false;  ///< so spread that its azimuth is averaged over a half circle
+  float spread2 = 0;      ///< radians², variance of its directions
+  float mean_cosine = 1;  ///< of its directions to their mean
+  bool wide = false;      ///< so spread that its azimuth is averaged over a half circle
   bool only_in_view = false;
   MapConstants opacity, shadow;
 };
@@ -79,6 +83,7 @@ struct ShadeConstants {
   bool dual_scattering = true;
   std::vector<LightConstants> lights;
   ProbeConstants probe;
+  bool bundled = false;            ///< thick hairs, which scatter as the bundles of the lanes
   bool mapped = false;             ///< roughness and tilt are those of the lanes
   RoughnessLevels levels;          ///< of the groom's maps
   std::vector<float> attenuation;  ///< a ForwardAttenuationTable of each level; empty without dual scattering, and of kSadeghi
@@ -94,6 +99,8 @@ ProbeConstants probe_constants(const LightRig& rig);
 ShadeConstants shade_constants(const HairMaterial& material, bool dual_scattering, const LightRig& rig);
 /// The same with the tables that the groom's maps of roughness need.
 ShadeConstants shade_constants(const GroomInstance& groom, bool dual_scattering, const LightRig& rig);
+/// Tells lane `i`, of thick hairs, which bundle it is.
+void set_bundle(const SeenBundle& bundle, ShadeBatch& batch, std::size_t i);
 /// Tells lane `i`, of a groom with maps of roughness or tilt, its own; returns the material there.
 HairMaterial set_finish(const ShadeConstants& constants, Finish finish, ShadeBatch& batch, std::size_t i);
 

@@ -108,6 +108,7 @@ struct ShadePlace {
   ScatterAverages averages;  // with dual scattering
   ScatterBack back;          //
   Vec3 tuft_color;           // of what has a diffuse lobe
+  ScatterBundle bundle;      // of thick hairs: of the other fibers, which shade the one that is seen
   Float depth_shift;         // crossings
   Float table;               // where its table of forward attenuation begins
 };
@@ -150,6 +151,11 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   s.table = own(batch.table, 0);
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
   s.depth_shift = load(batch.depth_shift.data() + i);
+  if (k.bundled) {
+    const Float others = max(load(batch.fibers.data() + i) - Float(1.0f), Float(0.0f));
+    s.bundle = scatter_bundle_buffon(others, load(batch.fiber_radius.data() + i), load(batch.half_width.data() + i),
+                                     load(batch.half_depth.data() + i));
+  }
   const bool probe = k.probe.texels != nullptr;
   const bool diffuse = material.model == HairMaterial::Model::kKajiyaKay || material.model == HairMaterial::Model::kPelekis;
   if (probe || (diffuse && !k.dual_scattering)) s.tuft_color = scatter_tuft_color(absorption, beta_azimuthal);
@@ -243,32 +249,74 @@ PELAGE_LANES_FN Vec3 shade_forward_attenuation(const std::vector<float>& tables,
   return Vec3(channel(s.fiber.sigma_a.x), channel(s.fiber.sigma_a.y), channel(s.fiber.sigma_a.z));
 }
 
-// Share of light that n fibers let pass to a Kajiya-Kay fiber: half of what its diffuse lobe scatters goes on.
-PELAGE_LANES_FN Vec3 shade_kajiya_kay_transmittance(const ShadePlace& s, Float n) {
-  return v_exp((s.tuft_color * Float(0.5f) - v_splat(Float(1.0f))) * n);
+// The way of light to a place.
+struct ShadeWay {
+  Float outside;      // mean number of hairs on it, without those of the bundle that the place stands for
+  ScatterWay within;  // of thick hairs: past the others of the bundle
+};
+
+// What a bundle adds to the crossings of a map, at its middle: half of its fibers, over its width or a texel, of which a look-up
+// blends two.
+PELAGE_LANES_FN Float shade_own_crossings(const MapConstants& m, const ShadePlace& s, ScatterWay within) {
+  if (m.crossings == nullptr) return Float(0.0f);
+  const Float texel =
+      (m.perspective ? max(shade_to_camera(m, s.position).z, Float(m.near_plane)) : Float(1.0f)) / Float(m.focal);
+  const Float over_width = within.longest * Float(0.785398163f), over_texel = s.bundle.reach * Float(1.5f) / texel;
+  return Float(0.5f) * min(over_width, over_texel);
+}
+
+PELAGE_LANES_FN ShadeWay shade_way(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
+  ShadeWay w;
+  w.outside = max(shade_crossings(light.opacity, s.position) - s.depth_shift, Float(0.0f));
+  if (!k.bundled) return w;
+  w.within = scatter_bundle_way(s.bundle, a.cos_phi * Float(light.mean_cosine));
+  w.outside = max(w.outside - shade_own_crossings(light.opacity, s, w.within), Float(0.0f));
+  return w;
+}
+
+// Share of the light that meets no hair on its way.
+PELAGE_LANES_FN Float shade_direct(const ShadeConstants& k, const ShadePlace& s, ShadeWay w) {
+  const Float direct = scatter_dual_direct(w.outside);
+  return k.bundled ? direct * scatter_bundle_visible(s.bundle, w.within, Float(1.0f)) : direct;
+}
+
+// Share of the light that comes through where every hair on the way keeps the share `each`.
+PELAGE_LANES_FN Vec3 shade_kept(const ShadeConstants& k, const ShadePlace& s, ShadeWay w, Vec3 each) {
+  const Vec3 kept = v_exp((each - v_splat(Float(1.0f))) * w.outside);
+  if (!k.bundled) return kept;
+  const auto within = [&](Float share) { return scatter_bundle_visible(s.bundle, w.within, Float(1.0f) - share); };
+  return kept * Vec3(within(each.x), within(each.y), within(each.z));
+}
+
+// Share of light that the fibers on its way let pass to a Kajiya-Kay fiber: half of what its diffuse lobe scatters goes on.
+PELAGE_LANES_FN Vec3 shade_kajiya_kay_transmittance(const ShadeConstants& k, const ShadePlace& s, ShadeWay w) {
+  return shade_kept(k, s, w, s.tuft_color * Float(0.5f));
 }
 
 // What Pelekis' model has for multiple scattering where dual scattering is off: Kajiya-Kay's diffuse lobe, dimmed like it.
-PELAGE_LANES_FN Vec3 shade_diffused(HairMaterial::Model model, const ShadePlace& s, Float n, ShadeAngles a) {
-  if (model != HairMaterial::Model::kPelekis) return v_splat(Float(0.0f));
-  return scatter_pelekis_diffused(s.tuft_color, a.cos_i) * shade_kajiya_kay_transmittance(s, n);
+PELAGE_LANES_FN Vec3 shade_diffused(const ShadeConstants& k, const ShadePlace& s, ShadeWay w, ShadeAngles a) {
+  if (k.material.model != HairMaterial::Model::kPelekis) return v_splat(Float(0.0f));
+  return scatter_pelekis_diffused(s.tuft_color, a.cos_i) * shade_kajiya_kay_transmittance(k, s, w);
 }
 
 PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light) {
   const ShadeIllumination i = shade_illuminate(light, s.position);
   const ShadeAngles a = shade_angles(s, i.to_light);
-  const Float n = max(shade_crossings(light.opacity, s.position) - s.depth_shift, Float(0.0f));
+  const ShadeWay way = shade_way(k, s, light, a);
   const Vec3 arriving = i.irradiance * shade_mesh_visibility(light.shadow, s.position);
   const Vec3 single = shade_single(k.material.model, s, light, a);
-  if (k.material.model == HairMaterial::Model::kKajiyaKay) return arriving * single * shade_kajiya_kay_transmittance(s, n);
-  const Vec3 direct = single * scatter_dual_direct(n);
-  if (!k.dual_scattering) return arriving * (direct + shade_diffused(k.material.model, s, n, a));
+  if (k.material.model == HairMaterial::Model::kKajiyaKay) return arriving * single * shade_kajiya_kay_transmittance(k, s, way);
+  const Float unscattered = shade_direct(k, s, way);
+  const Vec3 direct = single * unscattered;
+  if (!k.dual_scattering) return arriving * (direct + shade_diffused(k, s, way, a));
   const Float spread(light.spread2);
-  const Vec3 local = scatter_dual_local(s.back, spread, a.sin_i, a.cos_i, a.cos_phi) * scatter_dual_direct(n);
+  const Vec3 local = scatter_dual_local(s.back, spread, a.sin_i, a.cos_i, a.cos_phi) * unscattered;
+  // Hairs on the way: those of a bundle as the share of light says that meets none of them.
+  const Float n = k.bundled ? Float(0.0f) - m_log(max(unscattered, Float(1.0e-6f))) : way.outside;
   const Vec3 forwarded = shade_forwarded(k.material.model, s, scatter_dual_variance(n, s.averages.v_f) + spread, a);
   const Vec3 a_f =
       k.material.model == HairMaterial::Model::kSadeghi ? s.averages.a_f : shade_forward_attenuation(k.attenuation, s, a.cos_i);
-  return arriving * (direct + local + forwarded * scatter_dual_transmittance(n, a_f));
+  return arriving * (direct + local + forwarded * scatter_dual_scattered(shade_kept(k, s, way, a_f), unscattered));
 }
 
 // Prefiltered radiance about a direction; see probe_radiance().

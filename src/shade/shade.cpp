@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "frame/camera_view.h"
 #include "frame/fiber.h"
+#include "frame/section.h"
 #include "frame/segment_lookup.h"
 #include "shade/batch.h"
 #include "shade/evaluate.h"
@@ -46,6 +47,7 @@ void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, 
   batch.tx[i] = s.tangent.x, batch.ty[i] = s.tangent.y, batch.tz[i] = s.tangent.z;
   batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
   batch.absorb_r[i] = absorption.x, batch.absorb_g[i] = absorption.y, batch.absorb_b[i] = absorption.z;
+  if (constants.bundled) set_bundle(bundle_at(g.scene, g.numbering, segment, t, s, to_eye), batch, i);
   if (visibility) *visibility = g.packer->sample(segment, t, s);
 }
 
@@ -102,8 +104,10 @@ Radiance shade_with(Evaluator evaluator, const Scene& scene, const CameraView& v
   if (visibility) packer.emplace(scene, view, numbering), visibility->resize(list.first.size());
   const Gather gather{scene, view, numbering, sample_positions, keys, packer ? &*packer : nullptr};
   std::vector<ShadeConstants> constants;
-  for (const GroomInstance& groom : scene.grooms)
+  for (const GroomInstance& groom : scene.grooms) {
     constants.push_back(shade_constants(groom, scene.settings.dual_scattering, rig));
+    constants.back().bundled = groom.sections && scene.settings.thick_hairs.scattering == ThickScattering::kAggregate;
+  }
   parallel_for(list.first.size(), ShadeBatch::kSize, [&](std::size_t begin, std::size_t end) {
     ShadeBatch batch;
     shade_block(gather, constants, {list.first.data() + begin, end - begin}, evaluator, batch, radiance.color.data() + begin,

@@ -128,12 +128,12 @@ PELAGE_FN ScatterBack scatter_back(ScatterAverages m, Float sin_o, Float cos_o) 
 // Share of light that meets no hair where n hairs lie in its way on average (Poisson).
 PELAGE_FN Float scatter_dual_direct(Float n) { return m_exp(-n); }
 
+// Of light that comes through hairs, the share `kept` with and `direct` without scattering on the way: what was scattered.
+PELAGE_FN Vec3 scatter_dual_scattered(Vec3 kept, Float direct) { return (kept - v_splat(direct)) * Float(kDualDensity); }
 // Share of light that comes through n hairs on average after at least one forward scattering: d_f times the mean of
 // a_f^k over Poisson-distributed k >= 1. Zinke's product of a_f over exactly n hairs, without its step at n = 1.
 PELAGE_FN Vec3 scatter_dual_transmittance(Float n, Vec3 a_f) {
-  Float direct = m_exp(-n);
-  Vec3 all = v_exp((a_f - v_splat(Float(1.0f))) * n);
-  return (all - v_splat(direct)) * Float(kDualDensity);
+  return scatter_dual_scattered(v_exp((a_f - v_splat(Float(1.0f))) * n), m_exp(-n));
 }
 
 // Variance that n hairs add to the light that comes through: n >= 1 of them took part. Zinke 2008, section 3.1.
