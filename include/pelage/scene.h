@@ -100,8 +100,9 @@ struct LodHierarchy;  // <pelage/lod.h>
 /// (Huang 2025, section 4; references.bib: Huang2025LevelOfDetail). Metres, in the space of the strands.
 struct ThickSections {
   std::vector<Vec3> major, minor;  ///< [points] semi-axes r_A and r_B, across the hair
-  std::vector<float> fibers;       ///< [points] n_total, > 0: hairs that cross the section
+  std::vector<float> fibers;       ///< [points] n_total, > 0: hairs that a line across the hair would meet in the whole section
   std::vector<float> diameters;    ///< [points] of one fiber, ≥ 0
+  std::vector<float> spreads;      ///< [points] radians², variance of the fibers' directions about the hair's, along each axis
 };
 
 /// A groom: strands, or a hair mesh that they are made from.

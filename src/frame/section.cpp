@@ -26,6 +26,7 @@ SeenBundle bundle_at(const Scene& scene, const SegmentNumbering& numbering, cons
   SeenBundle b;
   b.fibers = between(all.fibers);
   b.radius = 0.5f * between(all.diameters) * groom.width_scale * similarity_scale(groom.transform);
+  b.spread = between(all.spreads);
   b.extent = section_extent(axis(all.major), axis(all.minor), surface.tangent, to_eye);
   return b;
 }

@@ -23,6 +23,7 @@ SectionExtent section_extent(Vec3 major, Vec3 minor, Vec3 along, Vec3 to_eye);
 struct SeenBundle {
   float fibers = 1;  ///< n_total
   float radius = 0;  ///< of one fiber
+  float spread = 0;  ///< radians², ThickSections::spreads
   SectionExtent extent;
 };
 

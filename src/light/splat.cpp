@@ -23,6 +23,7 @@ constexpr std::size_t kMaxLanes = 16;
 struct Segments {
   Float x, y, z, dx, dy, dz;  ///< texels, texels, metres: start and way to the end
   Float band;                 ///< texels, width
+  Float density;
   Mask valid;
 };
 
@@ -52,6 +53,7 @@ HWY_INLINE Segments segments_at(const CameraView& view, const LineBlock& lines, 
   s.dx = b.x - a.x, s.dy = b.y - a.y, s.dz = b.z - a.z;
   s.band = width * Float(0.5f) * (a.scale + b.scale);
   const Float near(view.near_plane);
+  s.density = load(lines.density.data() + j);
   s.valid = (width > Float(0.0f)) && (a.z >= near) && (b.z >= near) && ((s.dx * s.dx + s.dy * s.dy) > Float(0.0f));
   return s;
 }
@@ -72,7 +74,7 @@ HWY_INLINE int largest(Mask m, Float v) {
 }
 HWY_INLINE Float ceiling(Float v) { return -floor(-v); }
 
-/// Calls body(active, column, row, depth, area) for pieces of at most `step` texels; area in texels².
+/// Calls body(active, column, row, depth, crossings) for pieces of at most `step` texels; crossings summed over rays, a texel has 1.
 template <class Body>
 HWY_INLINE void for_each_piece(const CameraView& view, const LineBlock& lines, float step, const Body& body) {
   const float w = static_cast<float>(view.width), h = static_cast<float>(view.height);
@@ -92,7 +94,7 @@ HWY_INLINE void for_each_piece(const CameraView& view, const LineBlock& lines, f
       const Mask drawn = s.valid && (t0 < t1) && (Float(static_cast<float>(line)) < parallel);
       const Float span = t1 - t0;
       const Float pieces = max(ceiling(max(abs(s.dx), abs(s.dy)) * span * per_step), Float(1.0f));
-      const Float stride = span / pieces, area = reach * stride * s.band / parallel;
+      const Float stride = span / pieces, area = reach * stride * s.band * s.density / parallel;
       const int most_pieces = largest(drawn, pieces);
       for (int i = 0; i < most_pieces; ++i) {
         const Mask active = drawn && (Float(static_cast<float>(i)) < pieces);

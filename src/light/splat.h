@@ -16,7 +16,8 @@ struct LineBlock {
   static constexpr std::size_t kPadding = 64;   ///< points of width 0 behind the last, for whole-lane loads
   std::size_t count = 0;
   Buffer<float> x, y, z;  ///< metres
-  Buffer<float> width;    ///< metres, diameter of the segment that starts here; 0: none does
+  Buffer<float> width;    ///< metres, of the band that starts here; 0: none does
+  Buffer<float> density;  ///< hairs that a ray through the band meets on average: 1 of a strand
 };
 
 /// The map that is drawn into; the memory is shared by all threads.

@@ -1,5 +1,7 @@
 #include "light/strand_lines.h"
 
+#include <pelage/lod.h>
+
 #include <algorithm>
 
 #include "core/check.h"
@@ -47,7 +49,7 @@ float mean_span_length(const GroomInstance& groom) {
 }
 
 void reserve(LineBlock& block, std::size_t points) {
-  for (Buffer<float>* b : {&block.x, &block.y, &block.z, &block.width}) b->resize(points + LineBlock::kPadding);
+  for (Buffer<float>* b : {&block.x, &block.y, &block.z, &block.width, &block.density}) b->resize(points + LineBlock::kPadding);
 }
 
 /// Points that a strand becomes.
@@ -70,23 +72,33 @@ StrandLines::StrandLines(const GroomInstance& groom)
     : groom_(&groom), width_scale_(groom.width_scale * similarity_scale(groom.transform)), mean_span_(mean_span_length(groom)),
       bounds_(control_bounds(groom)) {}
 
+StrandLines::Band StrandLines::band(std::size_t point) const {
+  const ThickSections* thick = groom_->sections.get();
+  if (!thick) return {groom_->strands->width(point), 1};
+  const float hair = thick->diameters[point] * thick->fibers[point];
+  const float wide = std::max(mean_width(length(thick->major[point]), length(thick->minor[point])), 1e-9f);
+  return {wide, hair / wide};
+}
+
 void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const {
   const StrandSet& set = *groom_->strands;
   const bool bezier = set.basis == CurveBasis::kBezier;
   const std::size_t begin = set.offsets[strand], end = set.offsets[strand + 1], stride = span_stride(set);
   if (end - begin < 2) return;
   const auto point = [&](std::size_t i) { return transform_point(groom_->transform, set.points[i]); };
-  const auto put = [&](Vec3 p, float width) {
+  const auto put = [&](Vec3 p, Band from, Band to, float t) {
     const std::size_t j = block.count++;
-    block.x[j] = p.x, block.y[j] = p.y, block.z[j] = p.z, block.width[j] = width;
+    const float width = from.width + (to.width - from.width) * t;
+    block.x[j] = p.x, block.y[j] = p.y, block.z[j] = p.z, block.width[j] = width * width_scale_;
+    block.density[j] = from.density + (to.density - from.density) * t;
   };
   const std::size_t spans = (end - begin - 1) / stride;
   Vec3 p[4];
   for (std::size_t s = 0; s < spans; ++s) {
     const std::size_t i = begin + s * stride;
-    const float from = width(i) * width_scale_, to = width(i + stride) * width_scale_;
+    const Band from = band(i), to = band(i + stride);
     if (weights.size() == 1 && !bezier && set.basis != CurveBasis::kBSpline) {  // through the control points
-      put(point(i), 0.5f * (from + to));
+      put(point(i), from, to, 0.5f);
       continue;
     }
     p[1] = point(bezier ? i + 1 : i), p[2] = point(bezier ? i + 2 : i + 1);
@@ -94,10 +106,10 @@ void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, L
     p[3] = bezier ? point(i + 3) : i + 2 < end ? point(i + 2) : p[2] * 2.f - p[1];
     const float n = static_cast<float>(weights.size());
     for (std::size_t k = 0; k < weights.size(); ++k)
-      put(kernel::curve_combine(weights[k], p[0], p[1], p[2], p[3]), from + (to - from) * (static_cast<float>(k) + 0.5f) / n);
+      put(kernel::curve_combine(weights[k], p[0], p[1], p[2], p[3]), from, to, (static_cast<float>(k) + 0.5f) / n);
   }
   // Phantom points make every basis end at its last control point.
-  put(point(begin + spans * stride), 0);
+  put(point(begin + spans * stride), {}, {}, 0);
 }
 
 std::vector<std::uint32_t> StrandLines::pick(std::size_t stride, const CameraView& view) const {
@@ -127,7 +139,7 @@ std::size_t StrandLines::fill(const std::vector<std::uint32_t>& picked, std::siz
   block.count = 0;
   for (std::size_t i = first; i < s; ++i) append(picked[i], weights, block);
   for (std::size_t j = block.count; j < block.count + LineBlock::kPadding; ++j)
-    block.x[j] = block.y[j] = block.z[j] = block.width[j] = 0;
+    block.x[j] = block.y[j] = block.z[j] = block.width[j] = block.density[j] = 0;
   return s;
 }
 

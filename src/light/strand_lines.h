@@ -29,11 +29,11 @@ class StrandLines {
   static constexpr int kMaxSegments = 4;
 
  private:
-  /// Stored width of all fibers that a control point stands for.
-  float width(std::size_t point) const {
-    const ThickSections* thick = groom_->sections.get();
-    return thick ? thick->diameters[point] * thick->fibers[point] : groom_->strands->width(point);
-  }
+  /// Stored width of what a control point shows a light, and how many hairs a ray through it meets.
+  struct Band {
+    float width, density;
+  };
+  Band band(std::size_t point) const;
   void append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const;
 
   const GroomInstance* groom_;

@@ -98,6 +98,12 @@ LevelBounds::LevelBounds(const LodHierarchy& lod) : prisms_(lod.empty() ? 0 : lo
         bound.lower = box.lower, bound.upper = box.upper;
       }
   });
+  for (std::size_t r = 0; r < prisms_; ++r)
+    for (std::size_t k = 0; k < kPoints; ++k) {
+      const Bound& bound = bounds_[r * kPoints + k];
+      const Vec3 reach{bound.widest * 0.5f, bound.widest * 0.5f, bound.widest * 0.5f};
+      box_.extend(bound.lower - reach), box_.extend(bound.upper + reach);
+    }
 }
 
 LodLevels choose_levels(const LodPlace& place, const LevelBounds& bounds, float pixels, std::span<const std::uint8_t> before) {

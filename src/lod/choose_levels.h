@@ -48,9 +48,11 @@ class LevelBounds {
   };
   Range hairs(std::size_t level, std::size_t prism) const { return ranges_[level * prisms_ + prism]; }
   std::size_t prisms() const { return prisms_; }
+  const Bounds& box() const { return box_; }  ///< of all thick hairs, object space
 
  private:
   std::size_t prisms_;
+  Bounds box_;
   std::vector<Range> ranges_;  // [levels · prisms]
   std::vector<Bound> bounds_;  // [levels · prisms · kPoints]
 };

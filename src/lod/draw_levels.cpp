@@ -96,7 +96,7 @@ class PieceMaker {
   void add_hair(std::uint32_t h, const Run& run, Pieces& out) const {
     const LodHierarchy& lod = place_.lod;
     const ThickHair& hair = lod.hairs[h];
-    const auto fibers = static_cast<float>(hair.fibers);
+    const float fibers = static_cast<float>(hair.fibers) * crossing_ratio(lod.length_ratios[h]);
     const Vec3* c = &lod.centers[std::size_t{h} * kPoints];
     for (std::size_t k = run.first; k <= run.last; ++k) {
       const std::size_t i = std::size_t{h} * kPoints + k;
@@ -108,6 +108,7 @@ class PieceMaker {
       ThickSections& sections = out.sections;
       sections.major.push_back(lod.major[i]), sections.minor.push_back(lod.minor[i]);
       sections.fibers.push_back(fibers), sections.diameters.push_back(fiber);
+      sections.spreads.push_back(direction_variance(lod.length_ratios[h]));
     }
     StrandSet& set = out.hairs;
     if (!lod.colors.empty()) set.colors.push_back(lod.colors[h]);
@@ -145,7 +146,7 @@ void append(const StrandSet& from, StrandSet& to) {
 
 void append(const ThickSections& from, ThickSections& to) {
   append(from.major, to.major), append(from.minor, to.minor);
-  append(from.fibers, to.fibers), append(from.diameters, to.diameters);
+  append(from.fibers, to.fibers), append(from.diameters, to.diameters), append(from.spreads, to.spreads);
 }
 
 Pieces make_pieces(const PieceMaker& maker, std::size_t prisms) {
@@ -166,6 +167,13 @@ Pieces make_pieces(const PieceMaker& maker, std::size_t prisms) {
 }
 
 }  // namespace
+
+float crossing_ratio(float length_ratio) { return 0.5f * mean_width(std::max(length_ratio, 1.f), 1); }
+
+float direction_variance(float length_ratio) {
+  const float cosine = 1 / std::max(length_ratio, 1.f);
+  return 0.5f * (1 - cosine * cosine);
+}
 
 float covered_width(float band, float fiber, float fibers) {
   if (!(fiber < band)) return band > 0 ? band : fiber;

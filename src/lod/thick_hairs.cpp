@@ -1,8 +1,11 @@
 #include "lod/thick_hairs.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "core/bounds.h"
 #include "core/check.h"
 #include "frame/camera_view.h"
 #include "frame/curve_basis.h"
@@ -10,6 +13,9 @@
 
 namespace pelage {
 namespace {
+
+constexpr int kSmallestMap = 64;
+constexpr float kTexelsPerPixel = 2;
 
 std::uint64_t spans_of(const GroomInstance& groom) {
   const StrandSet& set = *groom.strands;
@@ -19,6 +25,22 @@ std::uint64_t spans_of(const GroomInstance& groom) {
     spans += span_count(set.basis, set.offsets[s + 1] - set.offsets[s]);
   }
   return spans;
+}
+
+/// How wide a box may look on the screen, pixels; INFINITY before the near plane.
+float pixels_wide(const Bounds& box, const CameraView& view, const Affine& to_camera) {
+  float nearest = INFINITY;
+  for (const Vec3 corner : corners(box)) nearest = std::min(nearest, transform_point(to_camera, corner).z);
+  if (!(nearest >= view.near_plane)) return INFINITY;
+  return length(box.extent()) * similarity_scale(to_camera) * pixels_per_metre(view, nearest);
+}
+
+/// Texels a side of maps of lights for hair that is `pixels` wide: a power of two, so that it seldom changes, at least two a pixel
+/// and no less than the settings' smallest; `most` where hair is large.
+int map_size(float pixels, int most) {
+  int size = kSmallestMap;
+  while (size < most && static_cast<float>(size) < kTexelsPerPixel * pixels) size *= 2;
+  return std::min(size, most);
 }
 
 }  // namespace
@@ -33,6 +55,7 @@ Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
   PELAGE_CHECK(active());
   Scene drawn = scene;
   drawn.grooms.clear(), changed_ = false, segments_ = 0;
+  float pixels = grooms_.size() == scene.grooms.size() ? 0 : INFINITY;  // grooms without levels of detail take maps as they are
   auto next = grooms_.begin();
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
     const GroomInstance& groom = scene.grooms[g];
@@ -41,6 +64,7 @@ Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
       continue;
     }
     const LodPlace place{*groom.lod, view, compose(view.world_to_camera, groom.transform)};
+    pixels = std::max(pixels, pixels_wide(next->bounds.box(), view, place.to_camera));
     const ThickHairSettings& settings = scene.settings.thick_hairs;
     LodLevels levels = settings.level >= 0 ? one_level(*groom.lod, static_cast<std::size_t>(settings.level))
                                            : choose_levels(place, next->bounds, settings.pixels, next->levels);
@@ -50,6 +74,9 @@ Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
     std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
     ++next;
   }
+  drawn.settings.opacity_map_size = map_size(pixels, scene.settings.opacity_map_size);
+  changed_ = changed_ || map_size_ != drawn.settings.opacity_map_size;
+  map_size_ = drawn.settings.opacity_map_size;
   for (const GroomInstance& groom : drawn.grooms)
     if (groom.strands) segments_ += spans_of(groom);
   return drawn;

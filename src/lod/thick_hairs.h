@@ -22,10 +22,12 @@ class ThickHairs {
 
   bool active() const { return !grooms_.empty(); }
 
-  /// `scene` with its grooms as `view` shows them. Where active(); the scene must be the one that this was made for.
+  /// `scene` with its grooms as `view` shows them, and RenderSettings::opacity_map_size no finer than what is seen. Where active(); the
+  /// scene must be the one that this was made for.
   Scene drawn(const Scene& scene, const CameraView& view);
 
-  bool changed() const { return changed_; }             ///< whether the last call chose other levels than the one before
+  /// Whether the last call chose other levels than the one before, or another size for the maps of lights.
+  bool changed() const { return changed_; }
   std::uint64_t segments() const { return segments_; }  ///< of the last call: spans of what is drawn
 
  private:
@@ -35,6 +37,7 @@ class ThickHairs {
     LodLevels levels;
   };
   std::vector<Groom> grooms_;
+  int map_size_ = 0;
   bool changed_ = false;
   std::uint64_t segments_ = 0;
 };

@@ -59,6 +59,7 @@ void pad(ShadeBatch& batch) {
                                    &batch.fiber_radius,
                                    &batch.half_width,
                                    &batch.half_depth,
+                                   &batch.lean,
                                    &batch.occlusion})
     std::fill_n(lanes->begin() + static_cast<std::ptrdiff_t>(batch.count), ShadeBatch::kPadding, (*lanes)[0]);
 }
@@ -113,6 +114,7 @@ ShadeConstants shade_constants(const GroomInstance& groom, bool dual_scattering,
 void set_bundle(const SeenBundle& bundle, ShadeBatch& batch, std::size_t i) {
   constexpr float kNarrowest = 1e-7f;  // a bundle of fibers without width
   batch.fibers[i] = bundle.fibers, batch.fiber_radius[i] = bundle.radius;
+  batch.lean[i] = bundle.spread;
   batch.half_width[i] = std::max(0.5f * bundle.extent.width, kNarrowest);
   batch.half_depth[i] = std::max(0.5f * bundle.extent.thickness, kNarrowest);
 }

@@ -109,6 +109,7 @@ struct ShadePlace {
   ScatterBack back;          //
   Vec3 tuft_color;           // of what has a diffuse lobe
   ScatterBundle bundle;      // of thick hairs: of the other fibers, which shade the one that is seen
+  Float lean;                // of thick hairs: variance of the fibers' directions
   Float depth_shift;         // crossings
   Float table;               // where its table of forward attenuation begins
 };
@@ -153,6 +154,7 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   s.depth_shift = load(batch.depth_shift.data() + i);
   if (k.bundled) {
     const Float others = max(load(batch.fibers.data() + i) - Float(1.0f), Float(0.0f));
+    s.lean = load(batch.lean.data() + i);
     s.bundle = scatter_bundle_buffon(others, load(batch.fiber_radius.data() + i), load(batch.half_width.data() + i),
                                      load(batch.half_depth.data() + i));
   }
@@ -202,18 +204,26 @@ PELAGE_LANES_FN ScatterPelekis shade_widened(ScatterPelekis l, Float variance) {
   return l;
 }
 
-// f·cos of the fiber itself under a light of some spread.
-PELAGE_LANES_FN Vec3 shade_single(HairMaterial::Model model, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
+// Variance of θ_i + θ_o under a light: its own, and that of fibers which lean, |n_i + n_o|² times that of one axis.
+PELAGE_LANES_FN Float shade_spread(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
   const Float spread(light.spread2);
+  return k.bundled ? spread + s.lean * (Float(2.0f) + Float(2.0f) * a.cos_phi) : spread;
+}
+
+// f·cos of the fiber itself under directions of some spread.
+PELAGE_LANES_FN Vec3 shade_single(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, Float spread,
+                                  ShadeAngles a) {
+  const HairMaterial::Model model = k.material.model;
+  const bool widened = k.bundled || light.spread2 > 0;
   if (model == HairMaterial::Model::kSadeghi) {
     if (light.wide) return scatter_dual_forward_sadeghi(s.artist, spread, a.sin_i, a.cos_i, a.cos_phi);
-    return scatter_sadeghi(light.spread2 > 0 ? shade_widened(s.artist, spread) : s.artist, a.sin_i, a.cos_i, a.cos_phi);
+    return scatter_sadeghi(widened ? shade_widened(s.artist, spread) : s.artist, a.sin_i, a.cos_i, a.cos_phi);
   }
   if (model == HairMaterial::Model::kPelekis) {
     if (light.wide) return scatter_dual_forward_pelekis(s.pelekis, spread, a.sin_i, a.cos_phi);
-    return scatter_pelekis(light.spread2 > 0 ? shade_widened(s.pelekis, spread) : s.pelekis, a.sin_i, a.cos_phi);
+    return scatter_pelekis(widened ? shade_widened(s.pelekis, spread) : s.pelekis, a.sin_i, a.cos_phi);
   }
-  const ScatterLobes lobes = light.spread2 > 0 ? shade_widened(s.lobes, spread) : s.lobes;
+  const ScatterLobes lobes = widened ? shade_widened(s.lobes, spread) : s.lobes;
   if (model == HairMaterial::Model::kKajiyaKay) return scatter_kajiya_kay(lobes, s.tuft_color, a.sin_i, a.cos_i);
   if (model == HairMaterial::Model::kZhu)
     return light.wide ? scatter_dual_forward_zhu(s.lobes, spread, a.sin_i, a.cos_i, a.cos_phi)
@@ -251,8 +261,9 @@ PELAGE_LANES_FN Vec3 shade_forward_attenuation(const std::vector<float>& tables,
 
 // The way of light to a place.
 struct ShadeWay {
-  Float outside;      // mean number of hairs on it, without those of the bundle that the place stands for
-  ScatterWay within;  // of thick hairs: past the others of the bundle
+  Float outside;      // mean number of hairs on it, of thick hairs without those of the bundle that the place stands for
+  ScatterWay within;  // of thick hairs: past the others of the bundle,
+  Float alone;        // and how far the bundle is alone: its share of the hairs here, 0…1
 };
 
 // What a bundle adds to the crossings of a map, at its middle: half of its fibers, over its width or a texel, of which a look-up
@@ -266,25 +277,34 @@ PELAGE_LANES_FN Float shade_own_crossings(const MapConstants& m, const ShadePlac
 }
 
 PELAGE_LANES_FN ShadeWay shade_way(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
-  ShadeWay w;
-  w.outside = max(shade_crossings(light.opacity, s.position) - s.depth_shift, Float(0.0f));
+  ShadeWay w{};
+  const Float n = max(shade_crossings(light.opacity, s.position) - s.depth_shift, Float(0.0f));
+  w.outside = n;
   if (!k.bundled) return w;
   w.within = scatter_bundle_way(s.bundle, a.cos_phi * Float(light.mean_cosine));
-  w.outside = max(w.outside - shade_own_crossings(light.opacity, s, w.within), Float(0.0f));
+  const Float own = shade_own_crossings(light.opacity, s, w.within);
+  w.alone = own / max(max(n, own), Float(1.0e-6f));
+  w.outside = max(n - own * w.alone, Float(0.0f)) * scatter_bundle_clumping(s.bundle);
   return w;
+}
+
+// Mean of (1 − loss)^k over the k other hairs of the bundle on the way. Between others, which take part of the way from each of its hairs,
+// a bundle shades itself less.
+PELAGE_LANES_FN Float shade_within(const ShadePlace& s, ShadeWay w, Float loss) {
+  return Float(1.0f) + (scatter_bundle_visible(s.bundle, w.within, loss) - Float(1.0f)) * w.alone;
 }
 
 // Share of the light that meets no hair on its way.
 PELAGE_LANES_FN Float shade_direct(const ShadeConstants& k, const ShadePlace& s, ShadeWay w) {
   const Float direct = scatter_dual_direct(w.outside);
-  return k.bundled ? direct * scatter_bundle_visible(s.bundle, w.within, Float(1.0f)) : direct;
+  return k.bundled ? direct * shade_within(s, w, Float(1.0f)) : direct;
 }
 
 // Share of the light that comes through where every hair on the way keeps the share `each`.
 PELAGE_LANES_FN Vec3 shade_kept(const ShadeConstants& k, const ShadePlace& s, ShadeWay w, Vec3 each) {
   const Vec3 kept = v_exp((each - v_splat(Float(1.0f))) * w.outside);
   if (!k.bundled) return kept;
-  const auto within = [&](Float share) { return scatter_bundle_visible(s.bundle, w.within, Float(1.0f) - share); };
+  const auto within = [&](Float share) { return shade_within(s, w, Float(1.0f) - share); };
   return kept * Vec3(within(each.x), within(each.y), within(each.z));
 }
 
@@ -304,12 +324,12 @@ PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, c
   const ShadeAngles a = shade_angles(s, i.to_light);
   const ShadeWay way = shade_way(k, s, light, a);
   const Vec3 arriving = i.irradiance * shade_mesh_visibility(light.shadow, s.position);
-  const Vec3 single = shade_single(k.material.model, s, light, a);
+  const Float spread = shade_spread(k, s, light, a);
+  const Vec3 single = shade_single(k, s, light, spread, a);
   if (k.material.model == HairMaterial::Model::kKajiyaKay) return arriving * single * shade_kajiya_kay_transmittance(k, s, way);
   const Float unscattered = shade_direct(k, s, way);
   const Vec3 direct = single * unscattered;
   if (!k.dual_scattering) return arriving * (direct + shade_diffused(k, s, way, a));
-  const Float spread(light.spread2);
   const Vec3 local = scatter_dual_local(s.back, spread, a.sin_i, a.cos_i, a.cos_phi) * unscattered;
   // Hairs on the way: those of a bundle as the share of light says that meets none of them.
   const Float n = k.bundled ? Float(0.0f) - m_log(max(unscattered, Float(1.0e-6f))) : way.outside;

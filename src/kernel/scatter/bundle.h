@@ -63,6 +63,12 @@ PELAGE_FN Float scatter_bundle_crossings(ScatterBundle b, Float cos_phi) {
 // Share of the bundle's width, seen from the eye, that hair covers.
 PELAGE_FN Float scatter_bundle_coverage(ScatterBundle b) { return b.coverage; }
 
+// What the bundle covers over what its hairs would side by side, both seen from the eye: by how much a groom drawn in such bundles lets
+// sight deeper in than its hairs do. 1: of hairs that do not hide each other.
+PELAGE_FN Float scatter_bundle_clumping(ScatterBundle b) {
+  return min(Float(1.27323954f) * b.coverage / b.longest, Float(1.0f));
+}
+
 // The way from what the eye sees to a light.
 struct ScatterWay {
   Float longest;  // mean number of hairs on the longest way through the bundle toward the light
