@@ -172,7 +172,8 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
                   "Meters from the eyes to what lies in the plane of the stereo picture; else as far as the target")
       ->check(CLI::PositiveNumber);
   verb.add_option("--view", o.view,
-                  "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo, motion; of strand linking: "
+                  "beauty, strand-id, u, tangent, depth, coverage, overdraw, albedo, motion, lod (levels of thick hairs); of "
+                  "strand linking: "
                   "linked (pixels that were hit and filled), alpha (opacity before the filter)")
       ->type_name("NAME");
   verb.add_option("--alpha", o.alpha,
@@ -200,6 +201,8 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--lod-level", o.lod_level, "One level of thick hairs everywhere, 0 the coarsest, instead of --lod-pixels")
       ->check(CLI::Range(0, 15))
       ->type_name("LEVEL");
+  verb.add_option("--lod-as", o.lod_as, "What stands for clusters: thick hairs, as many of their strands made wider, or cards")
+      ->type_name("thick|strands|cards");
   verb.add_option("--lod-scattering", o.lod_scattering, "Thick hairs scatter as the bundle they stand for, or as one fiber")
       ->type_name("aggregate|fiber");
   verb.add_flag("--no-occlusion", o.no_occlusion, "swr: baked occlusion of hair meshes does not dim the light of the probe");

@@ -21,7 +21,7 @@ struct RenderOptions {
   std::vector<std::string> outputs, meshes, lights;
   ImportOptions import;
   std::optional<std::string> size, method, view, alpha, tone_map, model, hair, background, environment, environment_lighting,
-      lod_scattering;
+      lod_as, lod_scattering;
   std::optional<std::string> stereo;  // meters
   std::optional<float> kernel_size, kernel_radius, depth_sigma;
   std::optional<int> samples, frames, subdivisions, opacity_map_size, lod_level;

@@ -173,6 +173,10 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.no_lod) s.swr.lod = s.thick_hairs.on = false;
   if (o.lod_pixels) s.thick_hairs.pixels = *o.lod_pixels;
   if (o.lod_level) s.thick_hairs.level = *o.lod_level;
+  if (o.lod_as)
+    s.thick_hairs.shape =
+        by_name<LodShape>("--lod-as", *o.lod_as,
+                          {{"thick", LodShape::kThickHairs}, {"strands", LodShape::kStrands}, {"cards", LodShape::kCards}});
   if (o.lod_scattering)
     s.thick_hairs.scattering =
         by_name<ThickScattering>("--lod-scattering", *o.lod_scattering,
@@ -190,7 +194,8 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
                             {"albedo", View::kAlbedo},
                             {"motion", View::kMotion},
                             {"linked", View::kLinked},
-                            {"alpha", View::kLinkAlpha}});
+                            {"alpha", View::kLinkAlpha},
+                            {"lod", View::kLod}});
   if (o.tone_map)
     s.tone_map = by_name<ToneMap>("--tone-map", *o.tone_map, {{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
   if (o.exposure) s.exposure = *o.exposure;

@@ -103,6 +103,7 @@ struct ThickSections {
   std::vector<float> fibers;       ///< [points] n_total, > 0: hairs that a line across the hair would meet in the whole section
   std::vector<float> diameters;    ///< [points] of one fiber, ≥ 0
   std::vector<float> spreads;      ///< [points] radians², variance of the fibers' directions about the hair's, along each axis
+  std::vector<std::uint8_t> levels;  ///< [strands] of the chain that each shows, 0 the coarsest
 };
 
 /// A groom: strands, or a hair mesh that they are made from.
@@ -155,6 +156,7 @@ enum class View {
   kMotion,
   kLinked,     ///< pixels that strand linking starts from (1) and those that it has filled (2)
   kLinkAlpha,  ///< opacity of hair after linking and alpha fix, before the filter
+  kLod,        ///< level of thick hairs that is drawn, 0 the coarsest; -1: strands themselves
 };
 
 /// Where a pixel's opacity comes from.
@@ -242,11 +244,19 @@ enum class ThickScattering {
   kFiber,      ///< as one fiber that is as wide
 };
 
+/// What stands for clusters that are small on the screen.
+enum class LodShape {
+  kThickHairs,  ///< one hair of elliptical cross-section for each cluster (Huang 2025)
+  kStrands,     ///< as many of its strands, wide enough for all of them (Cook 2007)
+  kCards,       ///< flat strips that strands are projected onto, cut out by alpha
+};
+
 /// Level of detail of grooms with thick hairs (Huang 2025; docs/lod.md), of any method that draws strands.
 struct ThickHairSettings {
   bool on = true;    ///< false: all strands, however small they are on the screen
   float pixels = 2;  ///< ε_w of eq. 16: how wide thick hairs may be on the screen, 0.1…64
-  int level = -1;    ///< ≥ 0: this level everywhere (0 is the coarsest, finest where there are fewer); -1: by `pixels`
+  LodShape shape = LodShape::kThickHairs;
+  int level = -1;  ///< ≥ 0: this level everywhere (0 is the coarsest, finest where there are fewer); -1: by `pixels`
   ThickScattering scattering = ThickScattering::kAggregate;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -37,6 +38,14 @@ Vec3 ramp(float x) {
   const float p = std::clamp(x, 0.f, 1.f) * 4;
   const int i = std::min(3, static_cast<int>(p));
   return lerp(kStops[i], kStops[i + 1], p - static_cast<float>(i));
+}
+
+// Strands in gray, thick hairs from the coarsest in red to blue; finer ones than there are colors take the last.
+Vec3 level_color(int level) {
+  static constexpr Vec3 kStrands{0.75f, 0.75f, 0.75f};
+  static constexpr Vec3 kLevels[] = {{0.85f, 0.15f, 0.15f}, {0.95f, 0.55f, 0.1f}, {0.95f, 0.9f, 0.2f},
+                                     {0.25f, 0.7f, 0.25f},  {0.15f, 0.7f, 0.8f},  {0.2f, 0.35f, 0.9f}};
+  return level < 0 ? kStrands : kLevels[std::min(level, static_cast<int>(std::size(kLevels)) - 1)];
 }
 
 Vec3 encoded(Vec3 linear) { return kernel::composite_srgb_encode3(linear); }
@@ -89,6 +98,11 @@ class Painter {
       const auto& ids = groom.strands->strand_id;
       const Vec3 color = id_color(s.groom, ids.empty() ? s.strand : ids[s.strand]);
       return {color, color, 1};
+    }
+    if (what_ == View::kLod) {
+      const int level = groom.sections ? groom.sections->levels[s.strand] : -1;
+      const auto data = static_cast<float>(level);
+      return {Vec3(data, data, data), level_color(level), 1};
     }
     if (what_ == View::kAlbedo) {
       const Vec3 color = albedo(groom, s);

@@ -10,7 +10,8 @@ namespace pelage {
 
 /// The same picture twice: numbers, and colors for people. Both R, G, B, A; A is 1 where there is a strand.
 struct DebugView {
-  Image data;     ///< the value in R, G and B: metres, u, coverage, fragments; unit tangent; hash of the strand; albedo
+  Image
+      data;  ///< the value in R, G and B: metres, u, coverage, fragments; unit tangent; hash of the strand; albedo; level of thick hairs, -1: strand
   Image display;  ///< sRGB-encoded, 0…1
 };
 

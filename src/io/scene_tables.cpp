@@ -325,10 +325,13 @@ const Fields<ThickHairSettings>& thick_hair_fields() {
   using T = ThickHairSettings;
   static const Names<ThickScattering> scattering{{"aggregate", ThickScattering::kAggregate},
                                                  {"fiber", ThickScattering::kFiber}};
+  static const Names<LodShape> shapes{
+      {"thick", LodShape::kThickHairs}, {"strands", LodShape::kStrands}, {"cards", LodShape::kCards}};
   static const Fields<T> table{
       boolean_field("on", "Whether clusters that are small on the screen are drawn as thick hairs", &T::on),
       number_field("pixels", "Widest thick hairs on the screen", &T::pixels, 0.1, 64),
       integer_field("level", "The one level that is drawn, 0 the coarsest; -1: by `pixels`", &T::level, -1, 15),
+      choice_field("shape", "What stands for clusters: thick hairs, as many of their strands, or cards", &T::shape, shapes),
       choice_field("scattering", "What thick hairs scatter: as the bundle they stand for, or as one fiber", &T::scattering,
                    scattering),
   };
@@ -379,7 +382,7 @@ const Fields<RenderSettings>& settings_fields() {
   static const Names<View> views{{"beauty", View::kBeauty},     {"strand-id", View::kStrandId}, {"u", View::kU},
                                  {"tangent", View::kTangent},   {"depth", View::kDepth},        {"coverage", View::kCoverage},
                                  {"overdraw", View::kOverdraw}, {"albedo", View::kAlbedo},      {"motion", View::kMotion},
-                                 {"linked", View::kLinked},     {"alpha", View::kLinkAlpha}};
+                                 {"linked", View::kLinked},     {"alpha", View::kLinkAlpha},    {"lod", View::kLod}};
   static const Names<EnvironmentLighting> environments{{"pieces", EnvironmentLighting::kPieces},
                                                        {"probe", EnvironmentLighting::kProbe}};
   static const Names<ToneMap> tone_maps{{"aces", ToneMap::kAces}, {"none", ToneMap::kNone}};

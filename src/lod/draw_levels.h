@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lod/choose_levels.h"
+#include "lod/pieces.h"
 
 namespace pelage {
 
@@ -30,5 +31,20 @@ float direction_variance(float length_ratio);
 /// control point before their place to the one after. The same for any number of threads. O(what is drawn).
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodPlace& place, const LevelBounds& bounds,
                                        const LodLevels& levels);
+
+/// The same with something else than thick hairs where levels are not strands: what `clusters` draws, curves of `basis`.
+std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodHierarchy& lod, const LodLevels& levels,
+                                       CurveBasis basis, const DrawClusters& clusters);
+
+/// Directions from places of a groom to the eye, in the groom's space; of any length.
+class ToEye {
+ public:
+  explicit ToEye(const LodPlace& place);  ///< refers to it
+  Vec3 operator()(Vec3 p) const;
+
+ private:
+  const LodPlace& place_;
+  Vec3 x_, y_, z_;  // axes of the camera in the groom's space
+};
 
 }  // namespace pelage

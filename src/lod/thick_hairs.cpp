@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 #include "core/bounds.h"
 #include "core/check.h"
@@ -47,8 +46,27 @@ int map_size(float pixels, int most) {
 
 ThickHairs::ThickHairs(const Scene& scene) {
   if (!scene.settings.thick_hairs.on) return;
-  for (std::size_t g = 0; g < scene.grooms.size(); ++g)
-    if (scene.grooms[g].lod && scene.grooms[g].strands) grooms_.push_back({g, LevelBounds(*scene.grooms[g].lod), {}});
+  const LodShape shape = scene.settings.thick_hairs.shape;
+  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
+    const GroomInstance& groom = scene.grooms[g];
+    if (!groom.lod || !groom.strands) continue;
+    grooms_.push_back({g, LevelBounds(*groom.lod), {}, {}, {}});
+    if (shape == LodShape::kStrands) grooms_.back().thickened.emplace(*groom.lod);
+    if (shape == LodShape::kCards) grooms_.back().cards.emplace(*groom.strands, *groom.lod);
+  }
+}
+
+std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const ThickHairSettings& settings,
+                                            const LodPlace& place, Groom& groom) {
+  const StrandSet& set = *instance.strands;
+  if (groom.cards) groom.levels = HairCards::choose(place, groom.bounds, settings.pixels, settings.level, groom.levels);
+  else if (settings.level >= 0) groom.levels = one_level(place.lod, static_cast<std::size_t>(settings.level));
+  else groom.levels = choose_levels(place, groom.bounds, settings.pixels, groom.levels);
+  if (groom.cards)
+    return draw_levels(instance, place.lod, groom.levels, CurveBasis::kLinear, groom.cards->pen(set, place, groom.bounds));
+  if (groom.thickened)
+    return draw_levels(instance, place.lod, groom.levels, set.basis, groom.thickened->pen(set, place.lod, groom.bounds));
+  return draw_levels(instance, place, groom.bounds, groom.levels);
 }
 
 Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
@@ -65,12 +83,9 @@ Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
     }
     const LodPlace place{*groom.lod, view, compose(view.world_to_camera, groom.transform)};
     pixels = std::max(pixels, pixels_wide(next->bounds.box(), view, place.to_camera));
-    const ThickHairSettings& settings = scene.settings.thick_hairs;
-    LodLevels levels = settings.level >= 0 ? one_level(*groom.lod, static_cast<std::size_t>(settings.level))
-                                           : choose_levels(place, next->bounds, settings.pixels, next->levels);
-    changed_ = changed_ || levels != next->levels;
-    next->levels = std::move(levels);
-    std::vector<GroomInstance> pieces = draw_levels(groom, place, next->bounds, next->levels);
+    const LodLevels before = next->levels;
+    std::vector<GroomInstance> pieces = draw(groom, scene.settings.thick_hairs, place, *next);
+    changed_ = changed_ || before != next->levels;
     std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
     ++next;
   }

@@ -10,6 +10,8 @@
 
 #include "frame/frame.h"
 #include "lod/choose_levels.h"
+#include "lod/hair_cards.h"
+#include "lod/thickened_strands.h"
 
 namespace pelage {
 
@@ -35,7 +37,11 @@ class ThickHairs {
     std::size_t number;  // in the scene
     LevelBounds bounds;
     LodLevels levels;
+    std::optional<ThickenedStrands> thickened;  // where they stand for clusters
+    std::optional<HairCards> cards;             // where they do
   };
+  static std::vector<GroomInstance> draw(const GroomInstance& instance, const ThickHairSettings& settings,
+                                         const LodPlace& place, Groom& groom);
   std::vector<Groom> grooms_;
   int map_size_ = 0;
   bool changed_ = false;
