@@ -95,6 +95,22 @@ TEST(OpacityMap, SlabOfParallelStrandsHasTheClosedForm) {
   EXPECT_EQ(crossings_at(map, {5, 0, -1}), 0);
 }
 
+// Bands of thick hairs are as wide as their sections and as deep as the fibers in them.
+TEST(OpacityMap, ThickHairsCountTheirFibers) {
+  constexpr int kCount = 20000;
+  constexpr float kFiber = 2e-4f, kFibers = 5, kDepth = 0.5f;
+  GroomInstance groom = groom_of(slab(kCount, kDepth), 1);  // the width on the screen plays no part
+  ThickSections sections;
+  const std::size_t points = groom.strands->point_count();
+  sections.major.assign(points, {0, 0.01f, 0}), sections.minor.assign(points, {0, 0, 0.01f});
+  sections.fibers.assign(points, kFibers), sections.diameters.assign(points, kFiber), sections.spreads.assign(points, 0);
+  groom.sections = std::make_shared<const ThickSections>(std::move(sections));
+  const OpacityMap map = map_of(groom, directional({0, 0, -1}), 64);
+  const float expected = kCount * kFibers * kFiber / 2;
+  EXPECT_NEAR(crossings_at(map, {0, 0, -kDepth}), expected, 0.05f * expected);
+  EXPECT_NEAR(crossings_at(map, {0, 0, -kDepth / 2}), expected / 2, 0.05f * expected);
+}
+
 TEST(OpacityMap, MeanCrossingsEqualCountingRays) {
   const std::vector<Straight> lines = thicket(400);
   constexpr float kWidth = 0.02f;

@@ -14,6 +14,7 @@
 #include "core/rng.h"
 #include "frame/camera_view.h"
 #include "light/strand_lines.h"
+#include "lod/thick_hairs.h"
 
 namespace pelage {
 namespace {
@@ -77,6 +78,24 @@ TEST(CoveredWidth, OneFiberIsAsWideAsItselfAndDenseHairAsItsBand) {
   EXPECT_FLOAT_EQ(covered_width(0, 2e-4f, 1), 2e-4f);
 }
 
+// Fibers that lean by δ toward all sides, counted: what they show from the side, and how far they lean along one axis.
+TEST(LeaningFibers, CrossAsOftenAsTheyLookLong) {
+  constexpr int kSides = 1000;
+  for (const double lean : {0., 0.1, 0.5, 1., 1.4}) {
+    double shown = 0, along_one_axis = 0;
+    for (int i = 0; i < kSides; ++i) {
+      const double side = std::sin(2 * 3.14159265358979 * (i + 0.5) / kSides);
+      shown += std::hypot(1, std::tan(lean) * side) / kSides;
+      along_one_axis += std::sin(lean) * std::sin(lean) * side * side / kSides;
+    }
+    const auto ratio = static_cast<float>(1 / std::cos(lean));
+    EXPECT_NEAR(crossing_ratio(ratio), shown, 0.006 * shown) << lean;
+    EXPECT_NEAR(direction_variance(ratio), along_one_axis, 1e-5) << lean;
+  }
+  EXPECT_EQ(crossing_ratio(0.9f), 1);
+  EXPECT_EQ(direction_variance(0.9f), 0);
+}
+
 TEST_F(DrawLevels, AllStrandsAreTheGroomItself) {
   const auto drawn = draw(all(lod_.levels()));
   ASSERT_EQ(drawn.size(), 1u);
@@ -102,7 +121,7 @@ TEST_F(DrawLevels, EveryLevelStandsForAllFibers) {
       const ThickSections& sections = *drawn[0].sections;
       const float all_widths = sections.diameters[s * kPoints + 7] * sections.fibers[s * kPoints + 7],
                   one = 2 * lod_.radii[h * kPoints + 7];
-      fibers += static_cast<double>(all_widths / one);
+      fibers += static_cast<double>(all_widths / (one * crossing_ratio(lod_.length_ratios[h])));
       ASSERT_LE(set.widths[s * kPoints + 7], all_widths * 1.0001f) << "they can only hide each other";
     }
     EXPECT_NEAR(fibers, static_cast<double>(groom_.strands->strand_count()), 1);
@@ -254,6 +273,25 @@ TEST(ThickHairs, KeepCoverageFarAway) {
     return total;
   };
   for (const float distance : {4.f, 12.f, 40.f}) EXPECT_NEAR(sum(distance, true) / sum(distance, false), 1, 0.03) << distance;
+}
+
+// Maps of lights need no more texels than are seen.
+TEST(ThickHairs, SmallHairTakesSmallMaps) {
+  Scene scene;
+  scene.grooms.push_back(groom_with_chain());
+  ThickHairs thick(scene);
+  const auto size = [&](float distance) { return thick.drawn(scene, view_from({0, 0, distance})).settings.opacity_map_size; };
+  EXPECT_EQ(size(0.1f), scene.settings.opacity_map_size);
+  EXPECT_EQ(size(1000), 64);
+  EXPECT_TRUE(thick.changed());
+  const int middle = size(8);
+  EXPECT_GT(middle, 64);
+  EXPECT_LT(middle, scene.settings.opacity_map_size);
+  EXPECT_EQ(size(8), middle);
+  EXPECT_FALSE(thick.changed());
+  scene.grooms.push_back(scene.grooms[0]);
+  scene.grooms[1].lod = nullptr;  // of which it is not known how large it is
+  EXPECT_EQ(ThickHairs(scene).drawn(scene, view_from({0, 0, 1000})).settings.opacity_map_size, scene.settings.opacity_map_size);
 }
 
 }  // namespace

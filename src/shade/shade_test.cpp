@@ -194,6 +194,8 @@ ShadeBatch random_batch() {
     batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
     batch.ex[i] = eye.x, batch.ey[i] = eye.y, batch.ez[i] = eye.z;
     batch.occlusion[i] = 1 - 0.5f * rng.uniform();
+    batch.fibers[i] = 1 + 50 * rng.uniform(), batch.fiber_radius[i] = 4e-5f, batch.lean[i] = 0.2f * rng.uniform();
+    batch.half_width[i] = 1e-4f + 4e-3f * rng.uniform(), batch.half_depth[i] = 1e-4f + 4e-3f * rng.uniform();
     batch.absorb_r[i] = rng.uniform(), batch.absorb_g[i] = rng.uniform(), batch.absorb_b[i] = rng.uniform();
   }
   return batch;
@@ -220,7 +222,12 @@ TEST(Shade, WideEqualsScalar) {
   for (const auto model : kModels) {
     const Scene scene = thicket(model);
     const LightRig rig = prepare_lights(scene, MeshTracer({}));
-    for (const bool dual : {true, false}) expect_wide_equals_scalar(shade_constants(scene.grooms[0].material, dual, rig));
+    for (const bool dual : {true, false})
+      for (const bool bundled : {false, true}) {
+        ShadeConstants constants = shade_constants(scene.grooms[0].material, dual, rig);
+        constants.bundled = bundled;
+        expect_wide_equals_scalar(constants);
+      }
   }
 }
 
@@ -365,6 +372,88 @@ TEST(Shade, DirectLightFadesWithTheCrossingsOfTheOpacityMap) {
     deepest = std::max(deepest, n);
   }
   EXPECT_GT(deepest, 1);
+}
+
+/// The scene with every strand as a thick hair of so many fibers in a circle `widths` times as wide as a strand.
+Scene bundled(Scene scene, float fibers, float widths) {
+  const std::size_t points = scene.grooms[0].strands->point_count();
+  const float width = scene.grooms[0].strands->width(0);
+  ThickSections sections;
+  sections.major.assign(points, {0.5f * widths * width, 0, 0}), sections.minor.assign(points, {0, 0.5f * widths * width, 0});
+  sections.fibers.assign(points, fibers), sections.diameters.assign(points, width), sections.spreads.assign(points, 0);
+  scene.grooms[0].sections = std::make_shared<const ThickSections>(std::move(sections));
+  return scene;
+}
+
+TEST(Shade, ABundleOfOneFiberIsAFiber) {
+  Scene scene = thicket(HairMaterial::Model::kMarschner);
+  const GBuffer g = random_gbuffer(scene, 1);
+  const Radiance strands = shade_all(scene, g);
+  const LightRig rig = prepare_lights(scene, MeshTracer({}));  // the same for both
+  const Scene one = bundled(scene, 1, 1);
+  const Radiance thick = shade(one, make_camera_view(one.camera, 32, 32), numbering_of(one), g, rig, kMiddle);
+  ASSERT_EQ(thick.color.size(), strands.color.size());
+  for (std::size_t i = 0; i < strands.color.size(); ++i)
+    EXPECT_NEAR(thick.color[i].x, strands.color[i].x, 0.02f * strands.color[i].x) << i;
+}
+
+// Alone under a light from behind, dense bundles let less through than loose ones; the setting switches that off.
+TEST(Shade, DenseBundlesShadeThemselves) {
+  Scene scene = scene_of(linear({{Vec3(0, -0.5f, 0), Vec3(0, 0.5f, 0)}}, 1e-4f));
+  scene.lights = {directional({0, 0, 1}, {1, 1, 1})};
+  scene.environment.radiance = {0, 0, 0};
+  const GBuffer g = random_gbuffer(scene, 1);
+  const auto mean = [&](const Scene& s) {
+    double sum = 0;
+    for (const Vec3 c : shade_all(s, g).color) sum += static_cast<double>(c.x);
+    return sum;
+  };
+  const double loose = mean(bundled(scene, 50, 2000)), dense = mean(bundled(scene, 50, 20));
+  EXPECT_LT(dense, 0.6 * loose);
+  scene.settings.thick_hairs.scattering = ThickScattering::kFiber;
+  EXPECT_NEAR(mean(bundled(scene, 50, 20)), mean(bundled(scene, 50, 2000)), 0.2 * loose);
+}
+
+// Fibers that lean at random by σ along both axes, one by one, beside one bundle that knows σ².
+TEST(Shade, LeaningFibersWidenTheLobesOfTheirBundle) {
+  constexpr float kLean = 0.15f;
+  double most_without = 0;
+  Scene scene = thicket(HairMaterial::Model::kMarschner);
+  scene.environment.radiance = {0, 0, 0}, scene.settings.shadows = false;
+  for (const Vec3 travels : {Vec3(0.2f, -0.3f, -1), Vec3(-0.9f, -0.6f, -0.2f), Vec3(0.3f, -0.35f, 1)}) {
+    scene.lights = {directional(travels, {1, 1, 1})};
+    const LightRig rig = prepare_lights(scene, MeshTracer({}));
+    ShadeConstants constants = shade_constants(scene.grooms[0].material, false, rig);
+    ShadeBatch batch = random_batch();
+    double one_by_one = 0;
+    constexpr int kBatches = 40;
+    for (int b = 0; b < kBatches; ++b) {
+      batch.count = ShadeBatch::kSize;
+      for (std::uint32_t i = 0; i < ShadeBatch::kSize; ++i) {
+        Rng rng(17 + static_cast<std::uint32_t>(b), i);
+        const float radius = kLean * std::sqrt(-2 * std::log(1 - rng.uniform())), angle = 6.2831853f * rng.uniform();
+        const Vec3 tangent = normalize({radius * std::cos(angle), 1, radius * std::sin(angle)});
+        batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
+        batch.ex[i] = 0, batch.ey[i] = 0, batch.ez[i] = 1;
+        batch.absorb_r[i] = batch.absorb_g[i] = batch.absorb_b[i] = 0.2f;
+      }
+      pad(batch);
+      evaluate_scalar(constants, batch);
+      for (std::size_t i = 0; i < batch.count; ++i)
+        one_by_one += static_cast<double>(batch.r[i]) / (kBatches * ShadeBatch::kSize);
+    }
+    const auto upright = [&](float lean) {
+      batch.count = 1, batch.tx[0] = 0, batch.ty[0] = 1, batch.tz[0] = 0;
+      batch.fibers[0] = 1, batch.lean[0] = lean * lean;
+      pad(batch);
+      evaluate_scalar(constants, batch);
+      return static_cast<double>(batch.r[0]);
+    };
+    constants.bundled = true;
+    EXPECT_NEAR(upright(kLean), one_by_one, 0.12 * one_by_one) << travels.x;
+    most_without = std::max(most_without, std::fabs(upright(0) / one_by_one - 1));
+  }
+  EXPECT_GT(most_without, 0.4);
 }
 
 TEST(Shade, MultipleScatteringBrightensBlondHairInShadow) {
