@@ -195,16 +195,9 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
   verb.add_flag("--no-filter", o.no_filter, "link, swr: hair is not smoothed along its strands");
   verb.add_flag("--no-lod", o.no_lod,
                 "All strands, however small they are on the screen: no thick hairs, and hair meshes whole (swr)");
-  verb.add_option("--lod-pixels", o.lod_pixels, "Widest thick hairs of grooms that have them (pelage lod build), pixels")
-      ->check(CLI::Range(0.1, 64.0))
-      ->type_name("PIXELS");
-  verb.add_option("--lod-level", o.lod_level, "One level of thick hairs everywhere, 0 the coarsest, instead of --lod-pixels")
-      ->check(CLI::Range(0, 15))
-      ->type_name("LEVEL");
+  add_thick_hair_options(verb, o);
   verb.add_option("--lod-as", o.lod_as, "What stands for clusters: thick hairs, as many of their strands made wider, or cards")
       ->type_name("thick|strands|cards");
-  verb.add_option("--lod-scattering", o.lod_scattering, "Thick hairs scatter as the bundle they stand for, or as one fiber")
-      ->type_name("aggregate|fiber");
   verb.add_flag("--no-occlusion", o.no_occlusion, "swr: baked occlusion of hair meshes does not dim the light of the probe");
   verb.add_option("--layers", o.layers, "More channels of EXR output")
       ->delimiter(',')

@@ -11,7 +11,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace pelage::cli {
 
@@ -37,6 +38,9 @@ struct RenderOptions {
 void add_camera_options(CLI::App& verb, RenderOptions& options);
 /// Adds the options that say what is seen and how it is shown: size, camera, light, hair, display.
 void add_scene_options(CLI::App& verb, RenderOptions& options);
+
+/// Adds the options that say which thick hairs are drawn, and what they scatter.
+std::vector<CLI::Option*> add_thick_hair_options(CLI::App& verb, RenderOptions& options);
 
 /// Reads the groom or scene file and applies the options to it. What the reader assumed is told in `notes`.
 Scene make_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes);

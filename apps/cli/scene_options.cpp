@@ -43,6 +43,19 @@ void add_hair_options(CLI::App& verb, RenderOptions& o) {
 
 }  // namespace
 
+std::vector<CLI::Option*> add_thick_hair_options(CLI::App& verb, RenderOptions& o) {
+  return {
+      verb.add_option("--lod-pixels", o.lod_pixels, "Widest thick hairs of grooms that have them (pelage lod build), pixels")
+          ->check(CLI::Range(0.1, 64.0))
+          ->type_name("PIXELS"),
+      verb.add_option("--lod-level", o.lod_level,
+                      "One level of thick hairs everywhere, 0 the coarsest, instead of --lod-pixels")
+          ->check(CLI::Range(0, 15))
+          ->type_name("LEVEL"),
+      verb.add_option("--lod-scattering", o.lod_scattering, "Thick hairs scatter as the bundle they stand for, or as one fiber")
+          ->type_name("aggregate|fiber")};
+}
+
 void add_camera_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--mesh", o.meshes, "Opaque mesh (OBJ, PLY, glb, tfxmesh); may be repeated")
       ->type_name("FILE")

@@ -26,7 +26,7 @@ struct TraceOptions {
   RenderOptions scene;
   TraceSettings settings;
   std::string checkpoint;
-  bool no_checkpoint = false, samples_given = false;
+  bool no_checkpoint = false, samples_given = false, lod = false;
 };
 
 const std::map<std::string, Integrator> kIntegrators{
@@ -133,6 +133,7 @@ void trace_verb(TraceOptions o) {
     const Progress progress = line.callback();
     Scene scene = make_scene(o.scene, progress, notes);
     if (o.scene.orbit) scene.previous_camera = turned(scene.camera, -*o.scene.orbit);
+    if (o.lod) scene = with_thick_hairs(scene);
     result = trace(scene, o.settings, progress);
     for (const std::string& path : o.scene.outputs) write_output(path, scene, result);
   }
@@ -161,6 +162,9 @@ void add_trace_options(CLI::App& verb, TraceOptions& o) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb.add_option("--seed", o.settings.seed, "Of the random numbers")->check(CLI::NonNegativeNumber);
+  CLI::Option* lod =
+      verb.add_flag("--lod", o.lod, "Thick hairs as `render` draws them where the groom has them, instead of all strands");
+  for (CLI::Option* option : add_thick_hair_options(verb, o.scene)) option->needs(lod);
   verb.add_flag("--raster-positions", o.settings.raster_positions, "Samples where those of `render --spp` with as many stand");
   verb.add_option("--orbit", o.scene.orbit,
                   "Degrees that the camera came around the target since the frame before, for the layer motion")
@@ -203,7 +207,8 @@ void add_trace(CLI::App& app) {
       "  pelage trace hair.tfx --mesh head.obj -o truth.exr --spp 1024\n"
       "  pelage trace scene.json -o quick.png --time 60\n"
       "  pelage trace scene.json -o noisy.exr --spp 1 --layers Z,position,tangent,strand,albedo\n"
-      "  pelage trace scene.json -o dual.exr --integrator dual --checkpoint dual.state");
+      "  pelage trace scene.json -o dual.exr --integrator dual --checkpoint dual.state\n"
+      "  pelage trace hair_lod.pelage -o thick.exr --lod --lod-pixels 2");
   verb->callback([o, verb] {
     if (o->scene.outputs.empty() && o->scene.gbuffer.empty()) throw CLI::RequiredError("--output");
     o->samples_given = verb->count("--spp") > 0;

@@ -32,6 +32,11 @@ struct RenderResult {
 /// any number of threads (see set_thread_count() in <pelage/runtime.h>).
 RenderResult render(const Scene& scene, const Progress& progress = {});
 
+/// `scene` with its thick hairs as render() draws them: grooms with GroomInstance::lod become what settings.thick_hairs shows of them from
+/// the scene's camera at its size, strands and pieces of thick hairs. What trace() then sees is what render() rasterizes; the hairs
+/// are seen from everywhere, but chosen by their width on the screen. Throws Error on settings out of range.
+Scene with_thick_hairs(const Scene& scene);
+
 /// Pictures of one scene from a camera that may move from picture to picture. Light maps and the trees of the meshes,
 /// which no camera changes, are made once, and Method::kTaa goes on from picture to picture: the first is that of a camera
 /// that stood still for `settings.frames` frames, those after it take one frame each.

@@ -108,6 +108,13 @@ DebugView render_unlit_view(const FrameInputs& inputs, Stages& stages) {
 
 }  // namespace
 
+Scene with_thick_hairs(const Scene& scene) {
+  check_settings(scene.settings);
+  ThickHairs thick(scene);
+  if (!thick.active()) return scene;
+  return thick.drawn(scene, make_camera_view(scene.camera, scene.settings.width, scene.settings.height));
+}
+
 struct PictureSequence::State {
   Scene scene;
   MeshTracer meshes;

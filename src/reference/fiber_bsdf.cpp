@@ -30,7 +30,11 @@ Vec2 cos_sin(float x) {
 }  // namespace
 
 FiberBsdf::Model FiberBsdf::make_model(const FiberView& view) {
-  switch (view.material.material().model) {
+  const HairMaterial::Model model = view.material.material().model;
+  if (view.bundle && model == HairMaterial::Model::kZhu) return fiber_models::Aggregate<fiber_models::ZhuFibers>(view);
+  if (view.bundle && (model == HairMaterial::Model::kMarschner || model == HairMaterial::Model::kChiang))
+    return fiber_models::Aggregate<fiber_models::MarschnerFibers>(view);
+  switch (model) {
     case HairMaterial::Model::kKajiyaKay: return fiber_models::KajiyaKay(view);
     case HairMaterial::Model::kZhu: return fiber_models::Zhu(view);
     case HairMaterial::Model::kChiang: return fiber_models::Chiang(view);
@@ -41,9 +45,28 @@ FiberBsdf::Model FiberBsdf::make_model(const FiberView& view) {
   return fiber_models::Marschner(view);
 }
 
+FiberBsdf::FiberBsdf(Vec3 tangent, Vec3 to_eye, const FiberView& view)
+    : tangent_(tangent), across_(across(tangent, to_eye)), side_(cross(tangent_, across_)), model_(make_model(view)) {}
+
+FiberView FiberBsdf::view_of(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye) {
+  const float sine = sine_along(tangent, to_eye);
+  return {material, strand_color, sine, cosine_of(sine), 0, {}};
+}
+
 FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, float h)
-    : tangent_(tangent), across_(across(tangent, to_eye)), side_(cross(tangent_, across_)),
-      model_(make_model({material, strand_color, sine_along(tangent, to_eye), cosine_of(sine_along(tangent, to_eye)), h})) {}
+    : FiberBsdf(tangent, to_eye, [&] {
+        FiberView view = view_of(material, strand_color, tangent, to_eye);
+        view.h = h;
+        return view;
+      }()) {}
+
+FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye,
+                     const kernel::ScatterBundle& others)
+    : FiberBsdf(tangent, to_eye, [&] {
+        FiberView view = view_of(material, strand_color, tangent, to_eye);
+        view.bundle = others;
+        return view;
+      }()) {}
 
 FiberAngles FiberBsdf::angles(Vec3 to_light) const {
   const float sin_i = sine_along(tangent_, to_light);

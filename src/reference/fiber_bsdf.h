@@ -6,6 +6,7 @@
 #include <array>
 #include <variant>
 
+#include "reference/aggregate_models.h"
 #include "reference/fiber_models.h"
 
 namespace pelage {
@@ -37,6 +38,10 @@ class FiberBsdf {
   /// there has the component h along that axis. Only near-field models look at it.
   FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, float h);
 
+  /// The fibers of a bundle: their mean over the rays that meet any of them. `others`: the bundle without the fiber that is met, as
+  /// to_eye sees it. Aggregates of Marschner's lobes (of kMarschner and kChiang) or Zhu's; other models scatter as one fiber.
+  FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, const kernel::ScatterBundle& others);
+
   /// f·cos θ_i, sum of the lobes. to_light: unit length, away from the fiber.
   Vec3 evaluate(Vec3 to_light) const;
   /// The same of one lobe, 0…3.
@@ -48,12 +53,16 @@ class FiberBsdf {
   /// The direction of sample(), weighted by the chosen lobe alone where that is quicker: for paths that find light in no other
   /// way and so need not know how often they would have drawn a direction.
   ScatteredDirection scatter(std::array<float, 4> u) const;
-  /// Integral of evaluate() over the sphere.
+  /// Integral of evaluate() over the sphere; of bundles within kAggregateAlbedoMaxError.
   Vec3 albedo() const;
 
  private:
-  using Model = std::variant<fiber_models::Marschner, fiber_models::Zhu, fiber_models::KajiyaKay, fiber_models::Chiang,
-                             fiber_models::Sadeghi, fiber_models::Pelekis>;
+  using Model =
+      std::variant<fiber_models::Marschner, fiber_models::Zhu, fiber_models::KajiyaKay, fiber_models::Chiang,
+                   fiber_models::Sadeghi, fiber_models::Pelekis, fiber_models::Aggregate<fiber_models::MarschnerFibers>,
+                   fiber_models::Aggregate<fiber_models::ZhuFibers>>;
+  FiberBsdf(Vec3 tangent, Vec3 to_eye, const FiberView& view);
+  static FiberView view_of(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye);
   static Model make_model(const FiberView& view);
   FiberAngles angles(Vec3 to_light) const;
   Vec3 world(const kernel::ScatterDirection& d) const;

@@ -11,6 +11,8 @@
 
 #include <pelage/scene.h>
 
+#include <optional>
+
 #include "reference/fiber_material.h"
 
 namespace pelage {
@@ -25,6 +27,7 @@ struct FiberView {
   const FiberMaterial& material;
   Vec3 strand_color;
   float sin_o, cos_o, h;
+  std::optional<kernel::ScatterBundle> bundle;  ///< of the fibers around the one that is seen
 
   kernel::ScatterFiber fiber() const { return material.fiber(strand_color); }
 };

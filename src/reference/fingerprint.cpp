@@ -97,7 +97,8 @@ std::uint64_t fingerprint(const Scene& scene, const TraceSettings& settings) {
   for (const char c : std::string(version())) f.add(c);
   f.add(settings.integrator, settings.curve_shape, settings.max_bounces, settings.seed, settings.raster_positions);
   if (settings.raster_positions) f.add(settings.samples);
-  f.add(scene.settings.width, scene.settings.height, scene.settings.shadows, scene.settings.dual_scattering);
+  f.add(scene.settings.width, scene.settings.height, scene.settings.shadows, scene.settings.dual_scattering,
+        scene.settings.thick_hairs.scattering);
   f.add(scene.camera, scene.previous_camera.has_value());
   if (scene.previous_camera) f.add(*scene.previous_camera);
   for (const Light& light : scene.lights) f.add(light);

@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "frame/camera_view.h"
+#include "frame/section.h"
 #include "frame/segment_lookup.h"
 #include "kernel/scalar.h"
 #include "reference/dual_light.h"
@@ -54,6 +55,15 @@ struct Tally {
   }
 };
 
+/// The fibers of a thick hair beside the one that a ray from `to_eye` met.
+kernel::ScatterBundle other_fibers(const ThickPlace& place, Vec3 to_eye) {
+  constexpr float kLeast = 1e-7f;  // metres, of a bundle without width
+  const float half_width = std::max(0.5f * section_extent(place.major, place.minor, place.tangent, to_eye).width, kLeast);
+  const float area = std::fabs(dot(place.tangent, cross(place.major, place.minor)));  // over π
+  return kernel::scatter_bundle_buffon(std::max(place.fibers - 1, 0.f), place.radius, half_width,
+                                       std::max(area / half_width, kLeast));
+}
+
 struct MeshMaterial {
   float specular, roughness;
 };
@@ -78,6 +88,7 @@ struct PathTracer::State {
   std::vector<GroomInstance> grooms;
   std::vector<FiberMaterial> fibers;  ///< [grooms]
   std::vector<MeshMaterial> mesh_materials;
+  bool aggregate;  ///< thick hairs scatter as the bundles that they stand for; false: as one fiber
   bool environment_visible;
   RayScene rays;
   Silhouette silhouette;
@@ -104,9 +115,10 @@ struct PathTracer::State {
 
   Vertex vertex(const SceneHit& hit, const Ray& ray) const;
   Vertex first_vertex(const SceneHit& hit, const Ray& ray, Vec2 at, PathSample& result) const;
-  bool visible(const Vertex& vertex, const LightRay& light) const;
-  void gather(const Vertex& vertex, const LightRay& light, Vec3 throughput, int depth, Tally& tally) const;
-  void gather_lights(const Vertex& vertex, std::array<float, 4> u, Vec3 throughput, int depth, Tally& tally) const;
+  Vertex thick_vertex(const SceneHit& hit, const Ray& ray) const;
+  bool visible(const Vertex& vertex, const LightRay& light, RandomBits key) const;
+  void gather(const Vertex& vertex, const LightRay& light, RandomBits key, Vec3 throughput, int depth, Tally& tally) const;
+  void gather_lights(const Vertex& vertex, std::array<float, 4> u, int depth, Walk& walk) const;
   ScatteredRay scatter_ray(const Vertex& vertex, std::array<float, 4> u, int depth) const;
   bool scatter(const Vertex& vertex, int depth, int max_bounces, Walk& walk) const;
   void transport(const Vertex& first, int max_bounces, Sequence& random, Tally& tally) const;
@@ -122,6 +134,7 @@ PathTracer::State::State(const Scene& scene, const PathSettings& s)
       previous_view(s.previous_camera ? make_camera_view(*s.previous_camera, scene.settings.width, scene.settings.height)
                                       : view),
       grooms(scene.grooms), fibers(fibers_of(grooms)), mesh_materials(materials(scene.meshes)),
+      aggregate(scene.settings.thick_hairs.scattering == ThickScattering::kAggregate),
       environment_visible(scene.environment.visible),
       rays(scene, s.integrator == Integrator::kDual ? CurveShape::kFlat : s.curve_shape), silhouette(view), lights(scene) {
   PELAGE_CHECK(settings.max_bounces >= 1);
@@ -149,8 +162,26 @@ Finish PathTracer::State::finish_of(const SceneHit& hit) const {
   return strand_finish(g, label.strand, label.u);
 }
 
+/// A fiber of a thick hair where the ray met it, among the others.
+Vertex PathTracer::State::thick_vertex(const SceneHit& hit, const Ray& ray) const {
+  const ThickPlace place = rays.thick_place(hit);
+  const Vec3 to_eye = normalize(-ray.direction);
+  const GroomInstance& g = grooms[hit.object];
+  const auto scattering = [&](const FiberMaterial& m) {
+    return aggregate ? FiberBsdf(m, color_of(hit), place.tangent, to_eye, other_fibers(place, to_eye))
+                     : FiberBsdf(m, color_of(hit), place.tangent, to_eye, 0);
+  };
+  return {ray.origin + ray.direction * hit.distance,
+          place.tangent,
+          {},
+          0,
+          has_finish_maps(g) ? scattering(FiberMaterial(finished(g.material, finish_of(hit)))) : scattering(fibers[hit.object]),
+          hit};
+}
+
 /// What the ray met, ready to scatter toward the ray's origin.
 Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
+  if (hit.kind == SceneHit::Kind::kThickHair) return thick_vertex(hit, ray);
   const Vec3 to_eye = normalize(-ray.direction);
   if (hit.kind == SceneHit::Kind::kStrand) {
     const StrandPlace place = rays.strand_place(hit);
@@ -164,7 +195,8 @@ Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
         place.tangent,
         {},
         place.radius,
-        has_finish_maps(g) ? scattering(FiberMaterial(finished(g.material, finish_of(hit)))) : scattering(fibers[hit.object])};
+        has_finish_maps(g) ? scattering(FiberMaterial(finished(g.material, finish_of(hit)))) : scattering(fibers[hit.object]),
+        hit};
   }
   Surface s = rays.surface(hit);
   if (dot(s.geometric_normal, to_eye) < 0)
@@ -175,7 +207,8 @@ Vertex PathTracer::State::vertex(const SceneHit& hit, const Ray& ray) const {
           {},
           s.geometric_normal,
           Vertex::kSurfaceOffset * scale,
-          SurfaceBsdf(s.normal, to_eye, s.color, m.specular, m.roughness)};
+          SurfaceBsdf(s.normal, to_eye, s.color, m.specular, m.roughness),
+          hit};
 }
 
 /// The same for the camera's ray, which also tells what it met. `at`: place of the sample in the image, pixels.
@@ -192,44 +225,48 @@ Vertex PathTracer::State::first_vertex(const SceneHit& hit, const Ray& ray, Vec2
     result.hair = true;
     result.tangent = v.tangent;
     result.normal = normalize(to_eye - v.tangent * dot(to_eye, v.tangent));
-    result.groom = hit.object, result.strand = label.strand, result.u = label.u, result.width = 2 * v.radius;
+    result.groom = hit.object, result.strand = label.strand, result.u = label.u;
+    result.width = 2 * (hit.kind == SceneHit::Kind::kThickHair ? rays.thick_place(hit).radius : v.radius);
   }
   const Vec3 before = transform_point(previous_view.world_to_camera, met);
   if (settings.previous_camera && before.z > 0) result.motion = project(previous_view, before) - at;
   return v;
 }
 
-bool PathTracer::State::visible(const Vertex& vertex, const LightRay& light) const {
+bool PathTracer::State::visible(const Vertex& vertex, const LightRay& light, RandomBits key) const {
   if (!settings.shadows || !light.casts_shadow) return true;
   const Ray ray = vertex.ray(light.to_light, light.distance);
-  return !(ray.near < ray.far) || !rays.occluded(ray);
+  return !(ray.near < ray.far) || !rays.occluded(ray, rays.passage_from(vertex.met, ray, key));
 }
 
 /// Light that comes straight from `light` and is scattered toward the eye.
-void PathTracer::State::gather(const Vertex& vertex, const LightRay& light, Vec3 throughput, int depth, Tally& tally) const {
+void PathTracer::State::gather(const Vertex& vertex, const LightRay& light, RandomBits key, Vec3 throughput, int depth,
+                               Tally& tally) const {
   if (!(largest(light.arriving) > 0)) return;
   Vec3 radiance = throughput * light.arriving * evaluate(vertex.bsdf, light.to_light);
   if (light.pdf > 0 && settings.technique == Technique::kMis)
     radiance *= power_heuristic(light.pdf, pdf(vertex.bsdf, light.to_light));
-  if (!(largest(radiance) > 0) || !visible(vertex, light)) return;
+  if (!(largest(radiance) > 0) || !visible(vertex, light, key)) return;
   if (tally.result.split && depth == 0) tally.shares = lobe_shares(vertex.bsdf, light.to_light);
   tally.add(radiance, depth);
 }
 
 /// Where the eye's ray ends every light is looked for, later one of them.
-void PathTracer::State::gather_lights(const Vertex& vertex, std::array<float, 4> u, Vec3 throughput, int depth,
-                                      Tally& tally) const {
+void PathTracer::State::gather_lights(const Vertex& vertex, std::array<float, 4> u, int depth, Walk& walk) const {
+  const Vec3 throughput = walk.throughput;
+  const auto gather_one = [&](const LightRay& light, std::size_t number, Vec3 weight) {
+    gather(vertex, light, walk.random.ray_key(1 + static_cast<std::uint32_t>(number)), weight, depth, walk.tally);
+  };
+  const std::size_t count = lights.lights().size();
   if (depth == 0) {
-    for (std::size_t i = 0; i < lights.lights().size(); ++i)
-      gather(vertex, lights.toward(i, vertex.position), throughput, depth, tally);
-    if (seek_environment) gather(vertex, lights.toward_environment({u[1], u[2]}, 1), throughput, depth, tally);
+    for (std::size_t i = 0; i < count; ++i) gather_one(lights.toward(i, vertex.position), i, throughput);
+    if (seek_environment) gather_one(lights.toward_environment({u[1], u[2]}, 1), count, throughput);
     return;
   }
   const LightSampler::Choice choice = lights.choose(u[0], seek_environment);
   if (!(choice.chance > 0)) return;
-  if (choice.index == lights.lights().size())
-    return gather(vertex, lights.toward_environment({u[1], u[2]}, choice.chance), throughput, depth, tally);
-  gather(vertex, lights.toward(choice.index, vertex.position), throughput / choice.chance, depth, tally);
+  if (choice.index == count) return gather_one(lights.toward_environment({u[1], u[2]}, choice.chance), count, throughput);
+  gather_one(lights.toward(choice.index, vertex.position), choice.index, throughput / choice.chance);
 }
 
 /// Where rays toward it look for the environment too, one that scatters must tell how often it is drawn by any lobe.
@@ -254,7 +291,7 @@ bool PathTracer::State::scatter(const Vertex& vertex, int depth, int max_bounces
   std::array<float, 4> v{};
   if (lit || roulette) v = walk.random.next();
   else walk.random.skip();
-  if (lit) gather_lights(vertex, v, walk.throughput, depth, walk.tally);
+  if (lit) gather_lights(vertex, v, depth, walk);
   const ScatteredRay scattered = scatter_ray(vertex, u, depth);
   walk.throughput = walk.throughput * scattered.weight;
   if (!(largest(walk.throughput) > 0)) return false;
@@ -268,12 +305,13 @@ bool PathTracer::State::scatter(const Vertex& vertex, int depth, int max_bounces
   const bool last = depth + 1 == max_bounces;
   if (last && !(share > 0)) return false;
   walk.ray = vertex.ray(scattered.direction);
+  const Passage passage = rays.passage_from(vertex.met, walk.ray, walk.random.ray_key(0));
   bool open = false;
   if (!last) {
-    walk.hit = rays.intersect(walk.ray);
+    walk.hit = rays.intersect(walk.ray, passage);
     open = walk.hit.kind == SceneHit::Kind::kNone;
   } else {
-    open = !settings.shadows || !rays.occluded(walk.ray);
+    open = !settings.shadows || !rays.occluded(walk.ray, passage);
   }
   if (share > 0 && (open || !settings.shadows))
     walk.tally.add(walk.throughput * environment.radiance(scattered.direction) * share, depth);
@@ -339,7 +377,7 @@ PathSample PathTracer::State::sample(int x, int y, std::uint32_t index) const {
   const Vec2 in_pixel = settings.positions.empty() ? Vec2(u[0], u[1]) : settings.positions[index % settings.positions.size()];
   const Vec2 at = Vec2(static_cast<float>(x), static_cast<float>(y)) + in_pixel;
   const Ray ray = camera_ray(view, at.x, at.y);
-  const SceneHit hit = covered ? rays.intersect(ray) : SceneHit();
+  const SceneHit hit = covered ? rays.intersect(ray, {random.ray_key(0), {}, 0}) : SceneHit();
   if (hit.kind == SceneHit::Kind::kNone) {
     see_environment(normalize(ray.direction), result);
     return result;

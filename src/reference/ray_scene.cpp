@@ -180,9 +180,63 @@ void RayScene::attach_curves(const Curves& c) {
   rtcReleaseGeometry(geometry);
 }
 
+/// One ray's query; Embree hands the context back, so it comes first.
+struct RayScene::QueryContext {
+  RTCIntersectContext embree;
+  const Passage* passage;
+};
+
+std::optional<float> RayScene::meet_thick(const ThickGeometry& thick, const RTCIntersectContext* context, std::uint32_t piece,
+                                          const RTCRay& ray) {
+  const Passage& passage = *reinterpret_cast<const QueryContext*>(context)->passage;
+  const SceneHit& left = passage.leaving;
+  const bool leaving = left.kind == SceneHit::Kind::kThickHair && left.object == thick.groom &&
+                       thick.curves->strand(left.primitive) == thick.curves->strand(piece);
+  const Ray r{{ray.org_x, ray.org_y, ray.org_z},
+              {ray.dir_x, ray.dir_y, ray.dir_z},
+              leaving ? std::max(ray.tnear, passage.outside) : ray.tnear,
+              ray.tfar};
+  const RandomBits bits = pcg4d(passage.key.x, passage.key.y + thick.groom, passage.key.z + piece, passage.key.w);
+  return thick.curves->meet(piece, r, uniform_from_bits(bits.x));
+}
+
+void RayScene::attach_thick(ThickGeometry& thick) {
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(thick.curves->piece_count()));
+  rtcSetGeometryUserData(geometry, &thick);
+  const auto bounds = [](const RTCBoundsFunctionArguments* args) {
+    const Bounds b = static_cast<const ThickGeometry*>(args->geometryUserPtr)->curves->bounds(args->primID);
+    *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+  };
+  const auto intersect = [](const RTCIntersectFunctionNArguments* args) {
+    if (args->valid[0] == 0) return;
+    const auto& thick_hairs = *static_cast<const ThickGeometry*>(args->geometryUserPtr);
+    auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const std::optional<float> met = meet_thick(thick_hairs, args->context, args->primID, query.ray);
+    if (!met) return;
+    query.ray.tfar = *met;
+    query.hit.geomID = thick_hairs.geometry, query.hit.primID = args->primID, query.hit.instID[0] = args->context->instID[0];
+    query.hit.u = query.hit.v = 0;
+  };
+  const auto occluded = [](const RTCOccludedFunctionNArguments* args) {
+    if (args->valid[0] == 0) return;
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    if (meet_thick(*static_cast<const ThickGeometry*>(args->geometryUserPtr), args->context, args->primID, ray))
+      ray.tfar = -INFINITY;
+  };
+  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryOccludedFunction(geometry, occluded);
+  rtcCommitGeometry(geometry);
+  thick.geometry = rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
 RayScene::RayScene(const Scene& scene, CurveShape shape) : shape_(shape), meshes_(world_meshes(scene.meshes)) {
   for (const GroomInstance& groom : scene.grooms) {
-    grooms_.push_back(make_curves(groom));
+    const auto number = static_cast<std::uint32_t>(grooms_.size());
+    grooms_.push_back(groom.sections ? Curves() : make_curves(groom));
+    thick_.push_back({groom.sections ? std::make_unique<const ThickCurves>(groom) : nullptr, 0, number});
     has_caps_.push_back(groom.strands->basis == CurveBasis::kLinear);
   }
   device_ = rtcNewDevice(nullptr);
@@ -194,7 +248,9 @@ RayScene::RayScene(const Scene& scene, CurveShape shape) : shape_(shape), meshes
   rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
                                                       (meshes_.empty() ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST)));
   for (const WorldMesh& mesh : meshes_) attach(device_, scene_, mesh);
-  for (const Curves& curves : grooms_) attach_curves(curves);
+  for (std::size_t g = 0; g < grooms_.size(); ++g)
+    if (thick_[g].curves) attach_thick(thick_[g]);
+    else attach_curves(grooms_[g]);
   arena().execute([&] { rtcCommitScene(scene_); });
   rtcSetDeviceMemoryMonitorFunction(device_, nullptr, nullptr);
   embree_bytes_ = static_cast<std::size_t>(std::max<std::int64_t>(memory, 0));
@@ -211,31 +267,38 @@ RayScene::~RayScene() {
   rtcReleaseDevice(device_);
 }
 
-SceneHit RayScene::intersect(const Ray& ray) const {
+SceneHit RayScene::intersect(const Ray& ray, const Passage& passage) const {
   RTCRayHit query;
   query.ray = embree_ray(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene_, &context, &query);
+  QueryContext context{{}, &passage};
+  rtcInitIntersectContext(&context.embree);
+  rtcIntersect1(scene_, &context.embree, &query);
   SceneHit hit;
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
   const auto meshes = static_cast<std::uint32_t>(meshes_.size());
   const bool mesh = query.hit.geomID < meshes;
-  hit.kind = mesh ? SceneHit::Kind::kMesh : SceneHit::Kind::kStrand;
   hit.distance = query.ray.tfar;
   hit.object = mesh ? query.hit.geomID : query.hit.geomID - meshes;
   hit.primitive = query.hit.primID, hit.u = query.hit.u, hit.v = query.hit.v;
+  const ThickCurves* thick = mesh ? nullptr : thick_[hit.object].curves.get();
+  hit.kind = mesh ? SceneHit::Kind::kMesh : thick ? SceneHit::Kind::kThickHair : SceneHit::Kind::kStrand;
+  if (thick) hit.u = thick->share_along(hit.primitive, ray.origin + ray.direction * hit.distance);
   return hit;
 }
 
-bool RayScene::occluded(const Ray& ray) const {
+bool RayScene::occluded(const Ray& ray, const Passage& passage) const {
   RTCRay query = embree_ray(ray);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene_, &context, &query);
+  QueryContext context{{}, &passage};
+  rtcInitIntersectContext(&context.embree);
+  rtcOccluded1(scene_, &context.embree, &query);
   return query.tfar < 0;
+}
+
+Passage RayScene::passage_from(const SceneHit& hit, const Ray& ray, RandomBits key) const {
+  if (hit.kind != SceneHit::Kind::kThickHair) return {key, {}, 0};
+  return {key, hit, thick_[hit.object].curves->way_out(hit.primitive, ray.origin, ray.direction)};
 }
 
 namespace {
@@ -281,6 +344,9 @@ bool RayScene::cross_strands(const Ray& ray, const StrandVisitor& visitor) const
 void RayScene::add_to(Silhouette& silhouette) const {
   for (const Curves& c : grooms_)
     for (std::size_t span = 0; span < c.spans.size(); ++span) silhouette.add(hull(c.basis, c.points_of(span)));
+  for (const ThickGeometry& thick : thick_)
+    for (std::size_t piece = 0; thick.curves && piece < thick.curves->piece_count(); ++piece)
+      silhouette.add(std::array{thick.curves->ball(piece)});
   const auto ball = [](Vec3 p) { return Vec4(p.x, p.y, p.z, 0); };
   for (const WorldMesh& mesh : meshes_)
     for (const std::array<std::uint32_t, 3>& t : mesh.triangles)
@@ -310,6 +376,11 @@ StrandPlace RayScene::strand_place(const SceneHit& hit) const {
 }
 
 StrandLabel RayScene::strand_label(const SceneHit& hit) const {
+  if (const ThickCurves* thick = thick_[hit.object].curves.get()) {
+    const std::uint32_t strand = thick->strand(hit.primitive), number = thick->number(hit.primitive);
+    return {strand, number / kThickTessellation,
+            (static_cast<float>(number) + hit.u) / static_cast<float>(thick->pieces_of(strand))};
+  }
   const Span& span = grooms_[hit.object].spans[hit.primitive];
   return {span.strand, span.number, (static_cast<float>(span.number) + hit.u) / static_cast<float>(span.count)};
 }
@@ -321,6 +392,7 @@ Surface RayScene::surface(const SceneHit& hit) const {
 std::size_t RayScene::span_total() const {
   std::size_t total = 0;
   for (const Curves& c : grooms_) total += c.spans.size();
+  for (const ThickGeometry& thick : thick_) total += thick.curves ? thick.curves->span_count() : 0;
   return total;
 }
 
@@ -328,6 +400,7 @@ std::size_t RayScene::bytes() const {
   std::size_t total = embree_bytes_ + resident_bytes(meshes_);
   for (const Curves& c : grooms_)
     total += c.points.bytes() + c.first_points.bytes() + capacity_bytes(c.spans) + capacity_bytes(c.flags);
+  for (const ThickGeometry& thick : thick_) total += thick.curves ? thick.curves->bytes() : 0;
   return total;
 }
 

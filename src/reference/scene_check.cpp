@@ -43,9 +43,27 @@ void check_light(const Light& l, const std::string& where) {
   require(l.inner_angle, where, "inner_angle"), require(l.outer_angle, where, "outer_angle");
 }
 
+void check_sections(const GroomInstance& g, const std::string& where) {
+  const ThickSections& s = *g.sections;
+  const std::size_t points = g.strands->point_count();
+  if (s.major.size() != points || s.minor.size() != points || s.fibers.size() != points || s.diameters.size() != points)
+    throw Error(where, "sections", fmt::format("not as many as the {} points", points), "give every point a section");
+  if (g.strands->basis == CurveBasis::kBezier)
+    throw Error(where, "sections", "thick hairs are no Bézier curves", "use a basis with a point for every span");
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::string place = fmt::format("section {}", i);
+    require(s.major[i], where, place.c_str()), require(s.minor[i], where, place.c_str());
+    if (!(s.fibers[i] > 0) || !finite(s.fibers[i]))
+      throw Error(where, place, fmt::format("{} fibers", s.fibers[i]), "more than 0");
+    if (!(s.diameters[i] >= 0) || !finite(s.diameters[i]))
+      throw Error(where, place, fmt::format("a fiber's diameter of {}", s.diameters[i]), "0 or more");
+  }
+}
+
 void check_groom(const GroomInstance& g, const std::string& where) {
   if (!g.strands) throw Error(where, "strands", "a groom without strands", "set GroomInstance::strands");
   validate(*g.strands, where);
+  if (g.sections) check_sections(g, where);
   const HairMaterial& m = g.material;
   require(m.color, where, "color"), require(g.transform, where, "transform"), require(g.width_scale, where, "width_scale");
   for (const float v :

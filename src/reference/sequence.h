@@ -93,6 +93,11 @@ class Sequence {
     return {uniform_from_bits(r.x), uniform_from_bits(r.y), uniform_from_bits(r.z), uniform_from_bits(r.w)};
   }
 
+  /// Random bits of ray `n` that starts where the sequence stands now, apart from all that next() gives.
+  RandomBits ray_key(std::uint32_t n) const {
+    return pcg4d(key_.x ^ 0x68bc21ebu, key_.y + index_, key_.z + block_, key_.w ^ (n + 1) * 0x85ebca6bu);
+  }
+
   /// As next(), for numbers that nobody looks at.
   void skip() { ++block_; }
 

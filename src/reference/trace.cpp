@@ -39,6 +39,14 @@ void check_settings(const TraceSettings& s) {
   require(s.checkpoint_seconds >= 0, "checkpoint_seconds", s.checkpoint_seconds, "0…");
 }
 
+/// Dual scattering counts strands on shadow rays; of thick hairs nobody has told it how many they are.
+void check_integrator(const Scene& scene, const TraceSettings& s) {
+  if (s.integrator != Integrator::kDual) return;
+  for (const GroomInstance& groom : scene.grooms)
+    if (groom.sections)
+      throw Error("trace settings", "integrator", "dual scattering of thick hairs", "trace paths, or all strands");
+}
+
 bool has(const TraceSettings& settings, TraceLayer layer) {
   return std::find(settings.layers.begin(), settings.layers.end(), layer) != settings.layers.end();
 }
@@ -149,6 +157,7 @@ TraceResult trace(const Scene& scene, const TraceSettings& settings, const Progr
   }
   check_settings(settings);
   check_scene(scene);
+  check_integrator(scene, settings);
   if (progress && !progress("build", 0)) throw Error("trace", "", "cancelled", "");
   const auto start = Clock::now();
   const PathTracer tracer(scene, path_settings(scene, settings));

@@ -11,6 +11,7 @@
 
 #include "core/ray.h"
 #include "reference/fiber_bsdf.h"
+#include "reference/ray_scene.h"
 #include "reference/surface_bsdf.h"
 
 namespace pelage {
@@ -43,16 +44,19 @@ inline Vec3 albedo(const Bsdf& bsdf) {
 /// A fiber scatters as a whole (its models know no place on its circumference), so light leaves from its axis. The ray begins
 /// where it comes out of the straight tube around the tangent, radius / cos θ away: what it would meet before that is the
 /// fiber itself. Rays along the fiber begin at the latest kLongestWay radii away.
+///
+/// A thick hair scatters where the ray met one of its fibers. Rays begin there; RayScene::passage_from() lets them out of the hair.
 struct Vertex {
   static constexpr float kBeyond = 1.05f;         ///< times the way out of the tube: strands bend
   static constexpr float kLongestWay = 20;        ///< radii
   static constexpr float kSurfaceOffset = 2e-5f;  ///< share of the scale of the coordinates and the ray
 
-  Vec3 position;          ///< on the strand's axis, or where rays leave the mesh (Surface::lifted); metres
+  Vec3 position;          ///< on the strand's axis, in the thick hair, or where rays leave the mesh (Surface::lifted); metres
   Vec3 tangent;           ///< of the strand
   Vec3 geometric_normal;  ///< of the mesh, on the side that light is scattered on
-  float radius = 0;       ///< of the strand, metres; or how far from the mesh rays begin
+  float radius = 0;       ///< of the strand, metres, 0 of a thick hair; or how far from the mesh rays begin
   Bsdf bsdf;
+  SceneHit met;  ///< what stands here: rays pass what is left of a thick hair
 
   bool hair() const { return std::holds_alternative<FiberBsdf>(bsdf); }
 
