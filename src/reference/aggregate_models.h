@@ -10,10 +10,13 @@ inline constexpr float kAggregateAlbedoMaxError = 8e-3f;
 /// Value over density of a direction that is drawn; luminance.
 inline constexpr float kBalancedMaxWeight = 3.2f;
 
+/// scatter_shares() toward azimuth phi, or the same at a place.
+kernel::ScatterShares shares_toward(const kernel::ScatterAggregate& a, const std::optional<BundlePlace>& place, float phi);
+
 /// What all lobes of `a` send through its bundle, by quadrature over the azimuth, and a backward lobe that gives back the rest. The kernel's sums of
 /// five cosines leave out 6 to 21 % of the backward lobe, so that they never make light; along a path that meets many bundles
 /// this adds up. docs/derivations/aggregated_scattering.md, "In the path tracer".
-void balance(kernel::ScatterAggregate& a);
+void balance(kernel::ScatterAggregate& a, const std::optional<BundlePlace>& place);
 
 /// The fibers of a bundle: which lobes they have.
 struct MarschnerFibers {
@@ -44,14 +47,13 @@ struct ZhuFibers {
 /// kernel/scatter/aggregated.h. What comes back from between the fibers counts as what remains.
 template <class Fibers>
 struct Aggregate {
-  explicit Aggregate(const FiberView& v) : bundle(scatter_prepare_aggregate(Fibers::lobes(v), *v.bundle)) {
-    balance(bundle);
+  explicit Aggregate(const FiberView& v) : bundle(scatter_prepare_aggregate(Fibers::lobes(v), *v.bundle)), place(v.place) {
+    balance(bundle, place);
     choice = scatter_choice_aggregate(bundle);
   }
 
   Vec3 value(FiberAngles a) const {
-    const float cos_phi = m_cos(a.phi);
-    return Fibers::value(bundle, scatter_shares(bundle, cos_phi), a, cos_phi);
+    return Fibers::value(bundle, shares_toward(bundle, place, a.phi), a, m_cos(a.phi));
   }
   float density(FiberAngles a) const { return Fibers::density(bundle, choice, a); }
   FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
@@ -64,6 +66,7 @@ struct Aggregate {
   }
 
   ScatterAggregate bundle;
+  std::optional<BundlePlace> place;
   ScatterAggregateChoice choice;
 
  private:

@@ -12,6 +12,18 @@ Vec3 across(Vec3 tangent, Vec3 w) {
   return normalize(cross(tangent, std::fabs(tangent.x) < 0.5f ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
 }
 
+/// None in a section without width.
+std::optional<BundlePlace> place_in(const kernel::ScatterBundle& others, Vec3 tangent, Vec3 to_eye, Vec3 offset, Vec3 major,
+                                    Vec3 minor) {
+  const float area = dot(tangent, cross(major, minor));  // over π
+  if (!(std::fabs(area) > 0)) return {};
+  const Vec3 to_x = cross(minor, tangent) / area, to_y = cross(tangent, major) / area;
+  const auto stretched = [&](Vec3 v) { return Vec2(dot(v, to_x), dot(v, to_y)); };
+  const Vec3 x = across(tangent, to_eye);
+  return BundlePlace{stretched(offset), stretched(x), stretched(cross(tangent, x)),
+                     2 * others.reach * kernel::kInvPi / std::fabs(area)};
+}
+
 float sine_along(Vec3 tangent, Vec3 w) { return kernel::v_clamp(dot(w, tangent), -1, 1); }
 float cosine_of(float sine) { return std::sqrt(1 - sine * sine); }
 
@@ -65,6 +77,15 @@ FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tang
     : FiberBsdf(tangent, to_eye, [&] {
         FiberView view = view_of(material, strand_color, tangent, to_eye);
         view.bundle = others;
+        return view;
+      }()) {}
+
+FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye,
+                     const kernel::ScatterBundle& others, Vec3 offset, Vec3 major, Vec3 minor)
+    : FiberBsdf(tangent, to_eye, [&] {
+        FiberView view = view_of(material, strand_color, tangent, to_eye);
+        view.bundle = others;
+        view.place = place_in(others, tangent, to_eye, offset, major, minor);
         return view;
       }()) {}
 

@@ -22,12 +22,23 @@ struct FiberAngles {
   float sin_i, cos_i, phi;
 };
 
+/// Where in its bundle the fiber stands that a ray met. Without it, a bundle scatters as the mean of all fibers that are seen from outside.
+///
+/// Where bundles stand in each other, what others hide of one is its far side: of what is left more is lit from here and less from there. So
+/// what the kernel means over the bundle (scatter_bundle_visible) is taken at the place: docs/derivations/aggregated_scattering.md.
+struct BundlePlace {
+  Vec2 at;            ///< in the coordinates of the section in which its hull is the unit circle
+  Vec2 across, side;  ///< in these, what FiberBsdf's directions φ = 0 and φ = π/2 are, per metre
+  float rate = 0;     ///< mean number of other fibers on a metre across the bundle
+};
+
 /// What all models are made from. h: see FiberBsdf.
 struct FiberView {
   const FiberMaterial& material;
   Vec3 strand_color;
   float sin_o, cos_o, h;
-  std::optional<kernel::ScatterBundle> bundle;  ///< of the fibers around the one that is seen
+  std::optional<kernel::ScatterBundle> bundle = {};  ///< of the fibers around the one that is seen
+  std::optional<BundlePlace> place = {};             ///< of that one among them
 
   kernel::ScatterFiber fiber() const { return material.fiber(strand_color); }
 };

@@ -166,12 +166,14 @@ Finish PathTracer::State::finish_of(const SceneHit& hit) const {
 Vertex PathTracer::State::thick_vertex(const SceneHit& hit, const Ray& ray) const {
   const ThickPlace place = rays.thick_place(hit);
   const Vec3 to_eye = normalize(-ray.direction);
+  const Vec3 met = ray.origin + ray.direction * hit.distance;
   const GroomInstance& g = grooms[hit.object];
   const auto scattering = [&](const FiberMaterial& m) {
-    return aggregate ? FiberBsdf(m, color_of(hit), place.tangent, to_eye, other_fibers(place, to_eye))
+    return aggregate ? FiberBsdf(m, color_of(hit), place.tangent, to_eye, other_fibers(place, to_eye), met - place.axis,
+                                 place.major, place.minor)
                      : FiberBsdf(m, color_of(hit), place.tangent, to_eye, 0);
   };
-  return {ray.origin + ray.direction * hit.distance,
+  return {met,
           place.tangent,
           {},
           0,
