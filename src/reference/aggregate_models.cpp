@@ -55,6 +55,15 @@ float passing(float x, float loss, float joint) {
 
 }  // namespace
 
+ScatterLobes spread_lobes(ScatterLobes l, float spread) {
+  if (!(spread > 0)) return l;
+  const auto wider = [&](const ScatterCone& c, float v) { return scatter_cone(l.sin_o, l.cos_o, c.shift, c.v + v); };
+  l.r = wider(l.r, 2 * spread);
+  l.tt = wider(l.tt, spread * (2 - 2 * l.n_tt.cos_mu));
+  l.trt = wider(l.trt, spread * (2 + 2 * l.n_trt.cos_mu));
+  return l;
+}
+
 ScatterShares shares_toward(const ScatterAggregate& a, const Place& place, float phi) {
   const float cos_phi = m_cos(phi);
   if (!place) return scatter_shares(a, cos_phi);

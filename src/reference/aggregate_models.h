@@ -18,9 +18,15 @@ kernel::ScatterShares shares_toward(const kernel::ScatterAggregate& a, const std
 /// this adds up. docs/derivations/aggregated_scattering.md, "In the path tracer".
 void balance(kernel::ScatterAggregate& a, const std::optional<BundlePlace>& place);
 
+/// Lobes of fibers whose directions vary by `spread` along each axis across the bundle. That moves θ_i + θ_o by |n_i + n_o|² times as much,
+/// 2 + 2 cos φ, which each lobe has at its center; R has the mean of all azimuths.
+kernel::ScatterLobes spread_lobes(kernel::ScatterLobes lobes, float spread);
+
 /// The fibers of a bundle: which lobes they have.
 struct MarschnerFibers {
-  static ScatterLobes lobes(const FiberView& v) { return scatter_prepare_marschner(v.fiber(), v.sin_o, v.cos_o); }
+  static ScatterLobes lobes(const FiberView& v) {
+    return spread_lobes(scatter_prepare_marschner(v.fiber(), v.sin_o, v.cos_o), v.spread);
+  }
   static Vec3 value(const ScatterAggregate& a, const ScatterShares& s, FiberAngles to, float cos_phi) {
     return scatter_aggregate_marschner(a, s, to.sin_i, to.cos_i, cos_phi);
   }
@@ -32,7 +38,9 @@ struct MarschnerFibers {
   }
 };
 struct ZhuFibers {
-  static ScatterLobes lobes(const FiberView& v) { return scatter_prepare_zhu(v.fiber(), v.sin_o, v.cos_o); }
+  static ScatterLobes lobes(const FiberView& v) {
+    return spread_lobes(scatter_prepare_zhu(v.fiber(), v.sin_o, v.cos_o), v.spread);
+  }
   static Vec3 value(const ScatterAggregate& a, const ScatterShares& s, FiberAngles to, float cos_phi) {
     return scatter_aggregate_zhu(a, s, to.sin_i, to.cos_i, cos_phi);
   }
@@ -52,9 +60,7 @@ struct Aggregate {
     choice = scatter_choice_aggregate(bundle);
   }
 
-  Vec3 value(FiberAngles a) const {
-    return Fibers::value(bundle, shares_toward(bundle, place, a.phi), a, m_cos(a.phi));
-  }
+  Vec3 value(FiberAngles a) const { return Fibers::value(bundle, shares_toward(bundle, place, a.phi), a, m_cos(a.phi)); }
   float density(FiberAngles a) const { return Fibers::density(bundle, choice, a); }
   FiberWeight weigh(FiberAngles a) const { return {value(a), density(a)}; }
   ScatterDirection sample(Vec4 u) const { return Fibers::sample(bundle, choice, u); }

@@ -13,14 +13,14 @@ Vec3 across(Vec3 tangent, Vec3 w) {
 }
 
 /// None in a section without width.
-std::optional<BundlePlace> place_in(const kernel::ScatterBundle& others, Vec3 tangent, Vec3 to_eye, Vec3 offset, Vec3 major,
-                                    Vec3 minor) {
-  const float area = dot(tangent, cross(major, minor));  // over π
+std::optional<BundlePlace> place_in(const ThickPlace& thick, const kernel::ScatterBundle& others, Vec3 to_eye, Vec3 met) {
+  const Vec3 tangent = thick.tangent;
+  const float area = dot(tangent, cross(thick.major, thick.minor));  // over π
   if (!(std::fabs(area) > 0)) return {};
-  const Vec3 to_x = cross(minor, tangent) / area, to_y = cross(tangent, major) / area;
+  const Vec3 to_x = cross(thick.minor, tangent) / area, to_y = cross(tangent, thick.major) / area;
   const auto stretched = [&](Vec3 v) { return Vec2(dot(v, to_x), dot(v, to_y)); };
   const Vec3 x = across(tangent, to_eye);
-  return BundlePlace{stretched(offset), stretched(x), stretched(cross(tangent, x)),
+  return BundlePlace{stretched(met - thick.axis), stretched(x), stretched(cross(tangent, x)),
                      2 * others.reach * kernel::kInvPi / std::fabs(area)};
 }
 
@@ -80,12 +80,11 @@ FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tang
         return view;
       }()) {}
 
-FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye,
-                     const kernel::ScatterBundle& others, Vec3 offset, Vec3 major, Vec3 minor)
-    : FiberBsdf(tangent, to_eye, [&] {
-        FiberView view = view_of(material, strand_color, tangent, to_eye);
-        view.bundle = others;
-        view.place = place_in(others, tangent, to_eye, offset, major, minor);
+FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, const ThickPlace& thick, Vec3 to_eye,
+                     const kernel::ScatterBundle& others, Vec3 met)
+    : FiberBsdf(thick.tangent, to_eye, [&] {
+        FiberView view = view_of(material, strand_color, thick.tangent, to_eye);
+        view.bundle = others, view.place = place_in(thick, others, to_eye, met), view.spread = thick.spread;
         return view;
       }()) {}
 

@@ -8,6 +8,7 @@
 
 #include "reference/aggregate_models.h"
 #include "reference/fiber_models.h"
+#include "reference/thick_curves.h"
 
 namespace pelage {
 
@@ -41,9 +42,9 @@ class FiberBsdf {
   /// The fibers of a bundle: their mean over the rays that meet any of them. `others`: the bundle without the fiber that is met, as
   /// to_eye sees it. Aggregates of Marschner's lobes (of kMarschner and kChiang) or Zhu's; other models scatter as one fiber.
   FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, const kernel::ScatterBundle& others);
-  /// The same of a fiber at `offset` (metres, from the bundle's axis, world) in an ellipse with these semi-axes.
-  FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tangent, Vec3 to_eye, const kernel::ScatterBundle& others,
-            Vec3 offset, Vec3 major, Vec3 minor);
+  /// The same of a fiber at `met` (world) in a bundle, `others` without it.
+  FiberBsdf(const FiberMaterial& material, Vec3 strand_color, const ThickPlace& thick, Vec3 to_eye,
+            const kernel::ScatterBundle& others, Vec3 met);
 
   /// f·cos θ_i, sum of the lobes. to_light: unit length, away from the fiber.
   Vec3 evaluate(Vec3 to_light) const;

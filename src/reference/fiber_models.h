@@ -39,6 +39,7 @@ struct FiberView {
   float sin_o, cos_o, h;
   std::optional<kernel::ScatterBundle> bundle = {};  ///< of the fibers around the one that is seen
   std::optional<BundlePlace> place = {};             ///< of that one among them
+  float spread = 0;                                  ///< radians², variance of their directions along each axis
 
   kernel::ScatterFiber fiber() const { return material.fiber(strand_color); }
 };

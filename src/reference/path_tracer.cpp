@@ -169,8 +169,7 @@ Vertex PathTracer::State::thick_vertex(const SceneHit& hit, const Ray& ray) cons
   const Vec3 met = ray.origin + ray.direction * hit.distance;
   const GroomInstance& g = grooms[hit.object];
   const auto scattering = [&](const FiberMaterial& m) {
-    return aggregate ? FiberBsdf(m, color_of(hit), place.tangent, to_eye, other_fibers(place, to_eye), met - place.axis,
-                                 place.major, place.minor)
+    return aggregate ? FiberBsdf(m, color_of(hit), place, to_eye, other_fibers(place, to_eye), met)
                      : FiberBsdf(m, color_of(hit), place.tangent, to_eye, 0);
   };
   return {met,

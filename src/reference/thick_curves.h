@@ -22,6 +22,7 @@ struct ThickPlace {
   Vec3 major, minor;   ///< semi-axes of the section
   float fibers = 1;    ///< n_total
   float radius = 0;    ///< of one fiber
+  float spread = 0;    ///< radians², ThickSections::spreads
 };
 
 /// All thick hairs of a groom with GroomInstance::sections, world space. Queries are const and thread-safe.
@@ -62,7 +63,7 @@ class ThickCurves {
   /// A cross-section between two pieces.
   struct Ring {
     Vec3 center, tangent, major, minor;
-    float fibers, diameter;
+    float fibers, diameter, spread;
   };
   struct Chord {
     float near, far;

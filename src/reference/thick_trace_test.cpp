@@ -91,6 +91,7 @@ Scene ball_of_bundles() {
   for (std::size_t i = 0; i < curves->point_count(); ++i) {
     sections->major.push_back({0.004f, 0, 0}), sections->minor.push_back({0, 0.0005f, 0.003f});
     sections->fibers.push_back(30), sections->diameters.push_back(4e-4f);
+    sections->spreads.push_back(0.01f);
   }
   scene.grooms[0].sections = sections;
   return scene;

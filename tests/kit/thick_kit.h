@@ -14,6 +14,7 @@ namespace pelage::kit {
 struct Bundle {
   Vec3 major, minor;
   float fibers = 1, radius = 0;
+  float spread = 0;  ///< radians²
 };
 
 /// Thick hairs of the given curves. turned: the minor axis lies in the plane of the curve, across it, whatever `minor` says but its length.
@@ -27,6 +28,7 @@ inline GroomInstance thick_hairs(const std::vector<std::vector<Vec3>>& curves, c
       sections->major.push_back(bundle.major);
       sections->minor.push_back(turned ? normalize(cross(bundle.major, along)) * length(bundle.minor) : bundle.minor);
       sections->fibers.push_back(bundle.fibers), sections->diameters.push_back(2 * bundle.radius);
+      sections->spreads.push_back(bundle.spread);
     }
   groom.sections = sections;
   return groom;
