@@ -16,6 +16,8 @@ NICENESS = 10  # a reference steps back behind everything else that runs
 
 
 class ReferenceCache:
+    suffixes = (".exr",)  # of the files that a reference is written as; the first is its name
+
     def __init__(self, shop, folder):
         self.shop, self.folder = shop, pathlib.Path(folder).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -41,10 +43,13 @@ class ReferenceCache:
             self.render(arguments, samples, file, note)
         return str(file), json.loads(note.read_text())["seconds"]
 
+    def outputs(self, file):
+        return [word for suffix in self.suffixes for word in ("-o", str(file.with_suffix(suffix)))]
+
     def render(self, arguments, samples, file, note):
         command = self.command(arguments, samples)
         start = time.monotonic()
-        done = subprocess.run(["nice", "-n", str(NICENESS), self.shop.pelage, *command, "-o", str(file)], cwd=self.shop.folder,
+        done = subprocess.run(["nice", "-n", str(NICENESS), self.shop.pelage, *command, *self.outputs(file)], cwd=self.shop.folder,
                               capture_output=True, text=True)
         if done.returncode != 0:
             raise Failure(done.stderr.strip().splitlines()[0] if done.stderr.strip() else f"exit status {done.returncode}")

@@ -10,7 +10,6 @@ a run that was stopped goes on where it was. At the end stand OUT/index.html, OU
 `pelage bench`: let nothing else run.
 """
 import argparse
-import html
 import json
 import math
 import os
@@ -18,10 +17,10 @@ import pathlib
 import re
 import subprocess
 
-from demo_report import ROOT, Failure, Workshop, machine, program, run
+from demo_report import ROOT, Failure, Workshop, program, run
 from link_report import ENVIRONMENT, write_environment
 from png_sheet import read_png, sheet, write_png
-from quality_table import markdown_row
+from report_page import Report, bench, curve_picture
 
 GROOMS = {"long-wavy": "", "curls": "curls."}  # and what their bench cases are called by
 DISTANCES = {"close": 1000, "mid": 350, "far": 70}  # pixels of height at 1080 rows
@@ -40,75 +39,13 @@ PAPER = {
               "lod": {"center": (3.07, 2.24, 0.35), "filter": (3.79, 2.40, 0.45), "msaa2": (4.08, 2.55, 0.49),
                       "msaa4": (5.95, 3.27, 0.52), "msaa8": (8.56, 4.17, 0.76)}}}
 
+ABOUT = "Deferred software rasterization of hair meshes beside Lipp 2026."
 LIGHTS = [{"name": "key", "type": "directional", "direction": [0.55, -0.75, -0.75], "intensity": [3.4, 3.2, 3.0]},
           {"name": "fill", "type": "directional", "direction": [-0.9, -0.25, -0.6], "intensity": [0.9, 1.0, 1.15]},
           {"name": "rim", "type": "directional", "direction": [-0.45, -0.6, 0.85], "intensity": [3.2, 3.3, 3.6]}]
 
 
-class Report:
-    """What is told, part by part: as Markdown, and as a page."""
-
-    def __init__(self, folder):
-        self.folder, self.markdown, self.body, self.verdicts, self.numbers = folder, [], [], [], {}
-
-    def text(self, words, heading=False):
-        self.markdown.append(f"## {words}" if heading else words)
-        tag = "h2" if heading else "p"
-        self.body.append(f"<{tag}>{html.escape(words)}</{tag}>")
-
-    def table(self, head, rows):
-        self.markdown.append("\n".join([markdown_row(head), markdown_row(["---"] * len(head)), *(markdown_row(r) for r in rows)]))
-        cells = "".join("<tr>" + "".join(f"<td>{html.escape(c)}</td>" for c in r) + "</tr>" for r in rows)
-        self.body.append("<table><tr>" + "".join(f"<th>{html.escape(c)}</th>" for c in head) + f"</tr>{cells}</table>")
-
-    def picture(self, file, about):
-        self.markdown.append(f"![{about}]({file})\n\n{about}")
-        self.body.append(f'<figure><a href="{file}"><img src="{file}" alt=""></a><figcaption>{html.escape(about)}</figcaption></figure>')
-
-    def verdict(self, row, met, measured):
-        """met: None where it cannot be said."""
-        self.verdicts.append({"row": row, "met": met, "measured": measured})
-
-    def write(self):
-        words = {True: "met", False: "missed", None: "–"}
-        rows = [[v["row"], words[v["met"]], v["measured"]] for v in self.verdicts]
-        top = Report(self.folder)
-        top.text(f"Deferred software rasterization of hair meshes beside Lipp 2026. {machine()}")
-        if rows:
-            top.table(["row", "", "measured"], rows)
-        (self.folder / "swr.md").write_text("\n\n".join(["# Method swr", *top.markdown, *self.markdown]) + "\n")
-        (self.folder / "swr.json").write_text(json.dumps({"machine": machine(), "rows": self.verdicts, **self.numbers}, indent=1) + "\n")
-        (self.folder / "index.html").write_text(PAGE.replace("@BODY@", "\n".join(top.body + self.body)))
-
-
-PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>Method swr</title><style>
-body { font: 15px/1.5 system-ui, sans-serif; max-width: 1500px; margin: 2em auto; padding: 0 1em; color: #222; background: #fff }
-table { border-collapse: collapse; margin: 1em 0; font-variant-numeric: tabular-nums }
-td, th { border-bottom: 1px solid #ddd; padding: .2em .7em; text-align: left; white-space: nowrap }
-figure { margin: 1em 0 } img { max-width: 100%; image-rendering: auto } figcaption { color: #555 }
-</style></head><body><h1>Method swr</h1>
-@BODY@
-</body></html>
-"""
-
-
 # ---- Measurements of `pelage bench` -------------------------------------------------------------------------------------------
-
-
-def bench(shop, regex):
-    """{(case, metric): value} of the cases whose names match."""
-    file = f"bench/{re.sub(r'[^a-z0-9]+', '-', regex).strip('-')}.json"
-    note, stamp = shop.folder / f"{file}.stamp", shop.stamp(["bench", regex], [])
-    if not (note.exists() and note.read_text() == stamp):
-        (shop.folder / "bench").mkdir(exist_ok=True)
-        print(f"measuring {regex}", flush=True)
-        done = subprocess.run([shop.pelage, "bench", regex, "--json", file], cwd=shop.folder, capture_output=True, text=True)
-        if done.returncode != 0:
-            raise Failure((done.stderr.strip() or done.stdout.strip() or f"exit status {done.returncode}").splitlines()[-1])
-        note.write_text(stamp)
-    lines = [json.loads(line) for line in (shop.folder / file).read_text().splitlines()]
-    return {(line["case"], line["metric"]): line["value"] for line in lines if "value" in line}
 
 
 def table1(shop, report, options):
@@ -205,32 +142,6 @@ def look(shop, report, options):
         if worst:
             report.verdict(f"LoD look: {metric} within 3 % from 2000 to 20 pixels", worst[0] <= 0.03,
                            f"worst {worst[1]:.3f}, {worst[2]} at {worst[3]} pixels")
-
-
-def curve_picture(curve, heights, metric):
-    """An SVG of all curves over the logarithm of the height."""
-    width, height, left, top = 900, 380, 60, 20
-    low, high = math.log(min(heights) / 1.1), math.log(max(heights) * 1.1)
-    values = [v for points in curve.values() for v in points.values()]
-    least, most = min(0.94, *values), max(1.06, *values)
-
-    def x(h):
-        return left + (high - math.log(h)) / (high - low) * (width - left - 120)
-
-    def y(v):
-        return top + (most - v) / (most - least) * (height - top - 50)
-
-    colors = ("#1b6ca8", "#d1495b", "#edae49", "#2e933c", "#6a4c93", "#555555")
-    parts = [f'<rect x="{left}" y="{y(1.03):.1f}" width="{width - left - 120}" height="{y(0.97) - y(1.03):.1f}" fill="#eee"/>',
-             f'<line x1="{left}" x2="{width - 120}" y1="{y(1):.1f}" y2="{y(1):.1f}" stroke="#aaa"/>']
-    parts += [f'<text x="{left - 8}" y="{y(v) + 4:.1f}" text-anchor="end">{v:.2f}</text>' for v in (0.97, 1, 1.03)]
-    parts += [f'<text x="{x(h):.1f}" y="{height - 25}" text-anchor="middle">{h}</text>' for h in heights]
-    for i, (style, points) in enumerate(curve.items()):
-        line = " ".join(f"{x(h):.1f},{y(points[h]):.1f}" for h in heights if h in points)
-        parts.append(f'<polyline points="{line}" fill="none" stroke="{colors[i % 6]}" stroke-width="2"/>')
-        parts.append(f'<text x="{width - 112}" y="{top + 14 + 18 * i}" fill="{colors[i % 6]}">{style}</text>')
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">'
-            f'<title>{metric}</title><rect width="{width}" height="{height}" fill="#fff"/>{"".join(parts)}</svg>\n')
 
 
 def dolly(shop, report, options):
@@ -451,7 +362,7 @@ def main():
     if not chosen:
         raise SystemExit(f"no part matches {options.only}")
     (folder / "scenes").mkdir(parents=True, exist_ok=True)
-    shop, report = Workshop(pelage, folder), Report(folder)
+    shop, report = Workshop(pelage, folder), Report(folder, "Method swr", "swr", ABOUT)
     for i, part in enumerate(chosen):
         print(f"[{i + 1}/{len(chosen)}] {part}", flush=True)
         try:

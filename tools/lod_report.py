@@ -1,0 +1,591 @@
+#!/usr/bin/env python3
+"""Makes the report of level of detail with thick hairs (Huang 2025) with one command: its table of goals, figures 6, 7, 9, 11, 12 and 13, every
+hairstyle in every color and light near, middle and far beside path tracing, and which kind of level of detail wins where.
+
+  tools/lod_report.py [--quick] [-o out/lod] [--only REGEX] [--styles …] [--colors …] [--lights …] [--shots …]
+
+Parts: construction, look, worlds, speed, dolly, still, motion, aggregate, knit. What the same command of the same program has made is kept, so a
+run that was stopped goes on where it was; path-traced pictures stay good for any program that traces the same, in the folder --cache
+(tools/reference_cache.py). Of the look, 192 pictures are path traced: --styles and the like choose a part. At the end stand
+OUT/index.html, which holds its pictures, OUT/lod.md and OUT/lod.json. For `speed`, let nothing else run.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+
+from demo_report import ROOT, Failure, Workshop, light_direction, program, run
+from png_sheet import read_png, sheet, write_png
+from reference_cache import ReferenceCache
+from report_page import COLORS as INKS
+from report_page import Report, bench, curve_picture
+
+ABOUT = "Level of detail with thick hairs beside Huang 2025: 100,000 strands of 64 points where nothing else is said."
+STYLES = ("straight", "wavy", "curly", "afro")
+COLORS = {"blond": (0.08, 0.1), "light-brown": (0.28, 0.15), "red-brown": (0.7, 0.9), "black": (6, 0)}  # eumelanin, pheomelanin
+LIGHTS = (0, 45, 90, 180)  # degrees from where the eye is
+SHOTS = {"near": 0.6, "middle": 0.2, "far": 0.02}  # share of the picture that hair takes
+SHARES = (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.003)
+FALL, FOV, AZIMUTH, ELEVATION = -20, 26, 145, 8  # of light and camera, degrees: hair is seen from behind, aside
+FIBER = ["--lod-scattering", "fiber"]
+METHODS = {  # name: (label, options of `pelage render`)
+    "full": ("all strands", ["--no-lod"]),
+    "thick": ("thick hairs", []),
+    "fiber": ("thick, one fiber's", FIBER),
+    "strands": ("thinned strands", ["--lod-as", "strands", *FIBER]),
+    "bundles": ("thinned, as bundles", ["--lod-as", "strands"]),
+    "cards": ("cards", ["--lod-as", "cards", *FIBER])}
+SHAPES = ("thick", "strands", "cards")
+PARTS = ("construction", "look", "worlds", "speed", "dolly", "still", "motion", "aggregate", "knit")
+
+
+class TraceCache(ReferenceCache):
+    """References by `pelage trace` of all strands, as PNG too."""
+    suffixes = (".exr", ".png")
+
+    @staticmethod
+    def command(arguments, samples):
+        return ["trace", *arguments, "--spp", str(samples)]
+
+
+# ---- Grooms and scenes -----------------------------------------------------------------------------------------------------------------
+
+
+def tell(shop, *arguments):
+    """What `pelage ARGUMENTS --json` prints."""
+    done = subprocess.run([shop.pelage, *arguments, "--json"], cwd=shop.folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Failure(done.stderr.strip().splitlines()[0] if done.stderr.strip() else f"exit status {done.returncode}")
+    return json.loads(done.stdout)
+
+
+def groom(shop, style, options):
+    """(file of a groom with its chain, stamp of building it)."""
+    plain, file = f"grooms/{style}-{options.strands}.pelage", f"grooms/{style}-{options.strands}-lod.pelage"
+    shop.make(["grow", style, "--strands", str(options.strands), "--points", "64"], [], plain)
+    return file, shop.make(["lod", "build", plain], [plain], file, json_output=True)
+
+
+class Stage:
+    """A groom before a camera that goes nearer and farther."""
+
+    def __init__(self, shop, style, options):
+        self.shop, self.options, self.style = shop, options, style
+        self.file, _ = groom(shop, style, options)
+        box = tell(shop, "info", self.file)["bounds"]
+        self.target = [(a + b) / 2 for a, b in zip(box["lower"], box["upper"])]
+        self.size = max(b - a for a, b in zip(box["lower"], box["upper"]))
+
+    def scene(self, away, pixels, color="light-brown", light=45, head=True, background=(0.12, 0.13, 0.15)):
+        azimuth, elevation = math.radians(AZIMUTH), math.radians(ELEVATION)
+        back = (math.sin(azimuth) * math.cos(elevation), math.sin(elevation), math.cos(azimuth) * math.cos(elevation))
+        camera = {"eye": [round(c + away * b, 5) for c, b in zip(self.target, back)], "target": self.target, "fov": FOV}
+        eumelanin, pheomelanin = COLORS[color]
+        return {"camera": camera, "meshes": [{"shape": "mannequin"}] if head else [],
+                "lights": [{"type": "directional", "direction": light_direction(camera, light, FALL), "intensity": [6, 6, 6]}],
+                "grooms": [{"file": f"../{self.file}", "material": {"eumelanin": eumelanin, "pheomelanin": pheomelanin}}],
+                "settings": {"width": pixels, "height": pixels, "background": list(background)}}
+
+    def write(self, name, scene):
+        file = f"scenes/{name}.json"
+        (self.shop.folder / file).write_text(json.dumps(scene, indent=1) + "\n")
+        return file
+
+    def render(self, name, scene, *arguments, output=None):
+        """(file, stamp) of a picture; `name` says what is seen, `output` what is made of it."""
+        file, output = self.write(name, scene), output or f"pictures/{name}.exr"
+        return output, self.shop.make(["render", file, *arguments], [file, self.file], output, json_output=True)
+
+    def covered(self, away):
+        """Share of the picture that hair takes."""
+        self.render(f"{self.style}-share", self.scene(away, 128), "--no-lod", "--view", "coverage", output=f"pictures/{self.style}-share.png")
+        picture = read_png(self.shop.folder / f"pictures/{self.style}-share.png")
+        return sum(linear(v) for row in picture.rows for v in row[::3]) / (picture.width * picture.height)
+
+    def distance(self, share):
+        """Metres from which hair takes `share` of the picture; as near as it gets where it never does. Kept."""
+        note = self.shop.folder / "distances.json"
+        known = json.loads(note.read_text()) if note.exists() else {}
+        key = f"{self.file} {share}"
+        if key not in known:
+            away = 0.8 * self.size / math.sqrt(share)
+            for _ in range(10):
+                found = self.covered(away)
+                if abs(found / share - 1) < 0.03:
+                    break
+                away = max(0.7 * self.size, away * min(2, max(0.5, found / share)) ** 0.5)
+            known[key] = round(away, 4)
+            note.write_text(json.dumps(known, indent=1) + "\n")
+        return known[key]
+
+
+def linear(value):
+    """Of an sRGB byte."""
+    v = value / 255
+    return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4
+
+
+def work(stamp):
+    """Seconds of the stages of a frame, without files."""
+    return sum(s["seconds"] for s in stamp["told"]["stages"] if not s["stage"].startswith("io."))
+
+
+def stage_seconds(told, stage):
+    return sum(s["seconds"] for s in told["stages"] if s["stage"] == stage)
+
+
+def stage_items(told, stage):
+    return sum(s["items"] for s in told["stages"] if s["stage"] == stage)
+
+
+# ---- Construction ---------------------------------------------------------------------------------------------------------------------------
+
+
+def construction(shop, report, options):
+    rows, seconds, shares = [], {}, {}
+    for style in options.styles:
+        file, built = groom(shop, style, options)
+        lod = tell(shop, "info", file)["lod"]
+        seconds[style], shares[style] = built["told"]["seconds"], lod["bytes"] / lod["groom_bytes"]
+        rows.append([style, f"{seconds[style]:.1f}", f"{100 * shares[style]:.1f} %", ", ".join(f"{level['hairs']:,}" for level in lod["levels"])])
+    report.text("Construction and memory", heading=True)
+    report.table(["", "seconds", "memory over the strands'", "thick hairs by level"], rows)
+    report.numbers["construction"] = {"seconds": seconds, "memory": shares}
+    report.verdict("construction ≤ 30 s", max(seconds.values()) <= 30 if options.whole else None, f"{max(seconds.values()):.1f} s at most")
+    report.verdict("extra memory ≤ 78 %", max(shares.values()) <= 0.78, f"{100 * max(shares.values()):.1f} % at most")
+
+
+# ---- Look: beside path tracing ------------------------------------------------------------------------------------------------------------
+
+
+def compare(shop, test, reference, *arguments):
+    return tell(shop, "compare", test, reference, *arguments)
+
+
+class Shot:
+    """A hairstyle in a color and a light, so far away that it takes its share of the picture."""
+
+    def __init__(self, stage, shot, color, light):
+        self.stage, self.shot, self.color, self.light = stage, shot, color, light
+        self.name = f"{stage.style}-{shot}-{color}-{light}"
+        self.scene = stage.scene(stage.distance(SHOTS[shot]), stage.options.size, color, light)
+
+    def mask(self):
+        scene = self.stage.scene(self.stage.distance(SHOTS[self.shot]), self.stage.options.size)
+        return self.stage.render(f"{self.stage.style}-{self.shot}-mask", scene, "--no-lod", "--view", "coverage", "--float")[0]
+
+    def truth(self, cache):
+        file = self.stage.write(self.name, self.scene)
+        return cache.picture([file], [file, self.stage.file], self.stage.options.samples, self.name)[0]
+
+    def picture(self, name, arguments):
+        """(EXR, PNG, stamp) of a method; arguments are options of `pelage render`."""
+        stem = f"pictures/{self.name}-{name}"
+        output, stamp = self.stage.render(self.name, self.scene, *arguments, "--method", "ssaa", "--spp", str(self.stage.options.render_samples),
+                                          "-o", f"{stem}.png", output=f"{stem}.exr")
+        return output, f"{stem}.png", stamp
+
+    def flip(self, picture, truth):
+        return compare(self.stage.shop, picture, truth, "--mask", self.mask(), "--tone-map", "aces", "--metrics", "flip")["flip"]
+
+    def tile(self, file, side):
+        """The hair of a PNG, magnified to about `side` pixels."""
+        whole = read_png(self.stage.shop.folder / file)
+        crop = min(whole.width, max(8, int(1.7 * whole.width * math.sqrt(SHOTS[self.shot]))))
+        corner = (whole.width - crop) // 2
+        return whole.crop(corner, corner, crop, crop).magnified(max(1, side // crop))
+
+
+def look(shop, report, options):
+    cache = TraceCache(shop, options.cache)
+    report.text("Look: near, middle and far beside path tracing", heading=True)
+    report.text(f"FLIP over the pixels of hair, {options.size}² pixels, against {options.samples} paths a pixel through all strands; the noise of these paths is in "
+                f"every number. Hair takes 60, 20 and 2 % of the picture. Light falls by {-FALL}° and is turned away from the eye by 0°, 45°, 90° and 180°.")
+    found = {}
+    for style in options.styles:
+        stage = Stage(shop, style, options)
+        for shot in options.shots:
+            lines = []
+            for color in options.colors:
+                for light in options.lights:
+                    lines.append(look_at(Shot(stage, shot, color, light), cache, found, options))
+                    print(f"look: {len(found)} of {len(options.styles) * len(options.shots) * len(options.colors) * len(options.lights)}", flush=True)
+            write_png(shop.folder / f"look-{style}-{shot}.png", sheet(lines, gap=4))
+            report.picture(f"look-{style}-{shot}.png", f"{style}, {shot}. From the left: path traced, {', '.join(l for l, _ in METHODS.values())}. From above: "
+                           f"{', '.join(options.colors)}, each with light at {', '.join(f'{a}°' for a in options.lights)}.")
+    look_tables(report, found)
+
+
+def look_at(shot, cache, found, options):
+    """Measures all methods, and returns the tiles of truth and methods."""
+    truth = shot.truth(cache)
+    tiles, flips = [shot.tile(pathlib.Path(truth).with_suffix(".png"), options.tile)], {}
+    for name, (_, arguments) in METHODS.items():
+        picture, shown, _ = shot.picture(name, arguments)
+        flips[name] = shot.flip(picture, truth)
+        tiles.append(shot.tile(shown, options.tile))
+    found[shot.stage.style, shot.shot, shot.color, shot.light] = flips
+    return tiles
+
+
+def look_tables(report, found):
+    report.numbers["look"] = [{"case": "-".join(map(str, case)), **flips} for case, flips in found.items()]
+    groups = {"shot": 1, "hairstyle": 0, "color": 2, "light": 3}
+    for what, axis in groups.items():
+        rows = []
+        for value in dict.fromkeys(case[axis] for case in found):
+            some = [flips for case, flips in found.items() if case[axis] == value]
+            rows.append([f"{value}{'°' if what == 'light' else ''}", *(f"{statistics.mean(f[m] for f in some):.4f}" for m in METHODS)])
+        report.table([f"FLIP, mean by {what}", *(label for label, _ in METHODS.values())], rows)
+    limits = {"near": 1, "middle": 1, "far": 1.1}
+    for shot in dict.fromkeys(case[1] for case in found):
+        ratios = {case: f["thick"] / f["full"] for case, f in found.items() if case[1] == shot}
+        worst = max(ratios, key=ratios.get)
+        good = sum(r < limits[shot] or r <= 1 for r in ratios.values())
+        goal = "below full geometry's with dual scattering" if limits[shot] == 1 else "within 10 % of full geometry's"
+        report.verdict(f"FLIP {shot}, thick hairs: {goal}, in every case", good == len(ratios),
+                       f"{good} of {len(ratios)} cases; mean ratio {statistics.mean(ratios.values()):.3f}, worst {ratios[worst]:.3f} ({'-'.join(map(str, worst))})")
+
+
+# ---- Which world wins where --------------------------------------------------------------------------------------------------------------------
+
+
+def worlds(shop, report, options):
+    cache = TraceCache(shop, options.cache)
+    color, light = options.colors[-1 if len(options.colors) < 2 else 1], options.lights[min(1, len(options.lights) - 1)]
+    kinds = {**{k: METHODS[k] for k in ("thick", "fiber", "strands", "bundles", "cards")}, "card bundles": ("cards, as bundles", ["--lod-as", "cards"])}
+    report.text("Which world wins where", heading=True)
+    report.text("FLIP against path tracing over the number of segments that are drawn and over the time of the frame, as widths on the screen "
+                f"({', '.join(map(str, options.widths))} pixels) allow fewer and fewer; all strands for comparison. {color}, light at {light}°. "
+                "Segments of cards are runs of texels, which on a GPU would be a texture (docs/lod.md).")
+    told = []
+    for style in options.styles:
+        stage = Stage(shop, style, options)
+        for name in options.shots:
+            shot, curves = Shot(stage, name, color, light), {}
+            truth = shot.truth(cache)
+            picture, _, stamp = shot.picture("full", METHODS["full"][1])
+            curves["all strands"] = [(stage_items(stamp["told"], "groom"), work(stamp), shot.flip(picture, truth))]
+            for kind, (label, arguments) in kinds.items():
+                for width in options.widths:
+                    picture, _, stamp = shot.picture(f"{kind.replace(' ', '-')}-{width}", [*arguments, "--lod-pixels", str(width)])
+                    curves.setdefault(label, []).append((stage_items(stamp["told"], "lod"), work(stamp), shot.flip(picture, truth)))
+            told += [{"style": style, "shot": name, "kind": k, "segments": a, "seconds": b, "flip": c} for k, points in curves.items() for a, b, c in points]
+            for axis, what in ((0, "segments"), (1, "seconds")):
+                file = f"worlds-{style}-{name}-{what}.svg"
+                (shop.folder / file).write_text(scatter_picture({k: [(p[axis], p[2]) for p in points] for k, points in curves.items()}, what, "FLIP"))
+                report.picture(file, f"{style}, {name}: FLIP over {what}.")
+    report.numbers["worlds"] = told
+    worlds_table(report, told)
+
+
+def worlds_table(report, told):
+    """Of each picture, who errs least with the segments of thick hairs at the default width or fewer."""
+    rows = []
+    for style, shot in dict.fromkeys((t["style"], t["shot"]) for t in told):
+        here = [t for t in told if (t["style"], t["shot"]) == (style, shot) and t["kind"] != "all strands"]
+        budget = sorted(t["segments"] for t in here if t["kind"] == METHODS["thick"][0])[-2:][0]
+        best = {}
+        for t in here:
+            if t["segments"] <= 1.05 * budget:
+                best[t["kind"]] = min(best.get(t["kind"], math.inf), t["flip"])
+        ranked = sorted(best, key=best.get)
+        rows.append([f"{style}, {shot}", f"{budget:,.0f}", ", ".join(f"{k} {best[k]:.4f}" for k in ranked)])
+    report.table(["within as many segments", "segments", "least FLIP, best first"], rows)
+
+
+def scatter_picture(curves, x_label, y_label):
+    """An SVG of points {name: [(x, y)]}, joined in order, over the logarithm of x."""
+    width, height, left, top, right = 900, 380, 60, 20, 190
+    points = [p for curve in curves.values() for p in curve]
+    low, high = math.log(min(p[0] for p in points) / 1.2), math.log(max(p[0] for p in points) * 1.2)
+    most = 1.1 * max(p[1] for p in points)
+
+    def at(p):
+        return left + (math.log(p[0]) - low) / (high - low) * (width - left - right), top + (1 - p[1] / most) * (height - top - 50)
+
+    parts = []
+    for i in range(5):
+        value = most * i / 4
+        y = at((points[0][0], value))[1]
+        parts.append(f'<line x1="{left}" x2="{width - right}" y1="{y:.1f}" y2="{y:.1f}" stroke="#ddd"/>'
+                     f'<text x="{left - 8}" y="{y + 4:.1f}" text-anchor="end">{value:.3f}</text>')
+    for power in range(math.ceil(low / math.log(10)), math.floor(high / math.log(10)) + 1):
+        x = at((10 ** power, 0))[0]
+        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{height - 50}" stroke="#ddd"/>'
+                     f'<text x="{x:.1f}" y="{height - 32}" text-anchor="middle">{10 ** power:g}</text>')
+    parts.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">{x_label}</text><text x="{left}" y="14">{y_label}</text>')
+    for i, (name, curve) in enumerate(curves.items()):
+        ink = "#000" if i == 0 else INKS[(i - 1) % len(INKS)]
+        places = [at(p) for p in curve]
+        parts.append(f'<polyline points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in places)}" fill="none" stroke="{ink}" stroke-width="2"/>')
+        parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{ink}"/>' for x, y in places]
+        parts.append(f'<text x="{width - right + 12}" y="{top + 14 + 18 * i}" fill="{ink}">{name}</text>')
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">'
+            f'<title>{y_label} over {x_label}</title><rect width="{width}" height="{height}" fill="#fff"/>{"".join(parts)}</svg>\n')
+
+
+# ---- Speed ---------------------------------------------------------------------------------------------------------------------------------------
+
+
+def timed(shop, file, arguments):
+    """What one run tells. Never kept."""
+    return tell(shop, "render", file, *arguments, "-o", "pictures/timed.png")
+
+
+def paired(shop, stage, share, options):
+    """[(told with all strands, told with thick hairs)], one after the other; kept for the program that was timed."""
+    name = f"speed-{stage.style}-{share}"
+    file = stage.write(name, stage.scene(stage.distance(share), options.speed_size, head=False))
+    note, stamp = shop.folder / f"{name}.json", shop.stamp([options.speed_size, options.runs], [file, stage.file])
+    if note.exists() and (kept := json.loads(note.read_text()))["stamp"] == stamp:
+        return kept["runs"]
+    print(f"timing {stage.style} at {100 * share:g} %", flush=True)
+    runs = [[timed(shop, file, ["--no-lod"]), timed(shop, file, [])] for _ in range(options.runs)]
+    note.write_text(json.dumps({"stamp": stamp, "runs": runs}))
+    return runs
+
+
+def speed(shop, report, options):
+    goals = {0.5: 0.99, 0.1: 2, 0.003: 13}
+    report.text("Speed against the share of the screen (figure 7)", heading=True)
+    report.text(f"Hair alone, {options.speed_size}² pixels, 8 samples, one light; medians of {options.runs} paired runs, all strands and thick hairs in turn, maps of light made anew in each "
+                "frame, reading and writing files not counted. `lod` chooses levels and makes what is drawn of them.")
+    stage = Stage(shop, options.styles[0], options)
+    found = {share: paired(shop, stage, share, options) for share in options.shares}
+    stages = [s["stage"] for s in next(iter(found.values()))[0][1]["stages"] if not s["stage"].startswith("io.")]
+    rows, ratios, selection = [], {}, {}
+    for share, runs in found.items():
+        def total(told):
+            return sum(s["seconds"] for s in told["stages"] if not s["stage"].startswith("io."))
+        ratios[share] = statistics.median(total(a) / total(b) for a, b in runs)
+        thick = statistics.median(total(b) for _, b in runs)
+        selection[share] = statistics.median(stage_seconds(b, "lod") / total(b) for _, b in runs)
+        rows.append([f"{100 * share:g} %", f"{1e3 * statistics.median(total(a) for a, _ in runs):.1f}", f"{1e3 * thick:.1f}", f"{ratios[share]:.2f}",
+                     *(f"{1e3 * statistics.median(stage_seconds(a, s) for a, _ in runs):.1f} / {1e3 * statistics.median(stage_seconds(b, s) for _, b in runs):.1f}" for s in stages)])
+        if share in goals:
+            report.verdict(f"speed ≥ {goals[share]}× at {100 * share:g} % of the screen", ratios[share] >= goals[share] if options.whole else None,
+                           f"{ratios[share]:.2f}×, {stage.style}")
+    report.table(["hair takes", "all strands, ms", "thick hairs, ms", "times as fast", *(f"{s}, ms" for s in stages)], rows)
+    report.numbers["speed"] = {"ratio": ratios, "selection": selection}
+    worst = max(selection, key=selection.get)
+    report.verdict("selection ≤ 2 % of the frame", all(v <= 0.02 for v in selection.values()) if options.whole else None,
+                   f"stage lod, with making what is drawn: {100 * selection[worst]:.1f} % at {100 * worst:g} %, {100 * min(selection.values()):.1f} % at least")
+
+
+# ---- Smoothness -----------------------------------------------------------------------------------------------------------------------------------
+
+
+def dolly(shop, report, options):
+    report.text("A dolly, from 30 % of the screen to 1 % (figure 6)", heading=True)
+    report.text(f"{options.frames} frames of {options.dolly_size}² pixels, hair alone on black, each made by itself. PSNR is between neighboring frames as a display shows them; "
+                "light and coverage are those of thick hairs over those of all strands, in sum over the picture, radiance is light over coverage.")
+    names = ("full", *SHAPES)
+    for style in options.dolly_styles:
+        stage, ratios, psnr = Stage(shop, style, options), {}, {name: [] for name in names}
+        first, last = (stage.distance(s) for s in (0.3, 0.01))
+        away = [first * (last / first) ** (i / (options.frames - 1)) for i in range(options.frames)]
+        before = {}
+        for i, distance in enumerate(away):
+            light, cover = dolly_frame(shop, stage, f"dolly-{style}-{i}", distance, options)
+            for name in names:
+                if i:
+                    psnr[name].append(compare(shop, light[name], before[name], "--tone-map", "aces", "--metrics", "psnr")["psnr"])
+            for name in SHAPES:
+                energy = compare(shop, light[name], light["full"], "--metrics", "energy")["energy"]
+                covered = compare(shop, cover[name], cover["full"], "--metrics", "energy")["energy"]
+                ratios.setdefault(name, []).append((covered, energy / covered))
+            before = light
+            print(f"dolly: {style}, {i + 1} of {options.frames}", flush=True)
+        dolly_tables(shop, report, style, away, psnr, ratios)
+
+
+def dolly_frame(shop, stage, name, distance, options):
+    """({method: picture}, {method: its coverage})."""
+    scene, light, cover = stage.scene(distance, options.dolly_size, head=False, background=(0, 0, 0)), {}, {}
+    for method in ("full", *SHAPES):
+        arguments = METHODS[method][1]
+        light[method], _ = stage.render(name, scene, *arguments, "--float", output=f"pictures/{name}-{method}.exr")
+        cover[method], _ = stage.render(name, scene, *arguments, "--float", "--view", "coverage", output=f"pictures/{name}-{method}-coverage.exr")
+    return light, cover
+
+
+def dolly_tables(shop, report, style, away, psnr, ratios):
+    labels = {name: METHODS[name][0] for name in psnr}
+    gains = [a - b for a, b in zip(psnr["thick"], psnr["full"])]
+    report.table([f"PSNR between frames, {style}", "mean, dB", "least, dB", "least over all strands, dB"],
+                 [[labels[n], f"{statistics.mean(v):.2f}", f"{min(v):.2f}", f"{min(a - b for a, b in zip(v, psnr['full'])):+.2f}"] for n, v in psnr.items()])
+    report.verdict(f"dolly, {style}: adjacent-frame PSNR never below full geometry's", min(gains) >= 0,
+                   f"least {min(gains):+.2f} dB, {sum(g >= 0 for g in gains)} of {len(gains)} steps, mean {statistics.mean(gains):+.2f} dB")
+    for at, what in enumerate(("coverage", "radiance")):
+        curves = {labels[n]: {1 / d: v[at] for d, v in zip(away, values)} for n, values in ratios.items()}
+        file = f"dolly-{style}-{what}.svg"
+        (shop.folder / file).write_text(curve_picture(curves, [round(1 / d, 3) for d in away[::max(1, len(away) // 6)]], what, 0.02))
+        report.picture(file, f"{style}: {what} over that of all strands, by 1 / distance; gray: within 2 %.")
+        values = [v[at] for v in ratios["thick"]]
+        steps = [abs(b / a - 1) for a, b in zip(values, values[1:])]
+        report.verdict(f"dolly, {style}: mean hair {what} within 2 % across every level change", max(abs(v - 1) for v in values) <= 0.02,
+                       f"{min(values):.3f} to {max(values):.3f} of all strands'; largest step between frames {100 * max(steps):.2f} %")
+    report.numbers[f"dolly {style}"] = {"psnr": psnr, "ratios": ratios, "metres": away}
+
+
+def still(shop, report, options):
+    stage = Stage(shop, options.styles[0], options)
+    scene = stage.write("still", stage.scene(stage.distance(SHOTS["middle"]), options.dolly_size, head=False))
+    (shop.folder / "still").mkdir(exist_ok=True)
+    tell(shop, "render", scene, "--view", "lod", "--frames", "60", "--orbit", "0", "-o", "still/still.####.png")
+    frames = [f.read_bytes() for f in sorted((shop.folder / "still").glob("still.*.png"))]
+    flips = sum(a != b for a, b in zip(frames, frames[1:]))
+    report.text("A still camera", heading=True)
+    report.text(f"{len(frames)} frames in which nothing moves: {flips} of them show other levels than the one before.")
+    report.verdict("zero flips in 60 still frames", flips == 0 and len(frames) == 60, f"{flips} in {len(frames)} frames")
+    picture, _ = stage.render("still", stage.scene(stage.distance(SHOTS["middle"]), options.dolly_size, head=False), "--view", "lod",
+                              output="pictures/levels.png")
+    report.picture(picture, "Levels in one of them: strands gray, thick hairs from the coarsest in red, orange, yellow, green, cyan.")
+
+
+def offers(shop, *words):
+    """Whether the program's help knows a verb or a word of it."""
+    done = subprocess.run([shop.pelage, *words[:-1], "--help"], capture_output=True, text=True)
+    return done.returncode == 0 and re.search(rf"\b{words[-1]}\b", done.stdout) is not None
+
+
+def motion(shop, report, options):
+    report.text("Hair that moves (figure 9)", heading=True)
+    if not offers(shop, "simulate"):
+        report.text("Left out: this program cannot simulate.")
+        report.verdict("a simulated sequence: adjacent-frame PSNR never below full geometry's", None, "left out: no `pelage simulate`")
+        return
+    moved_sequence(shop, report, options)
+
+
+def moved_sequence(shop, report, options):
+    stage, count = Stage(shop, options.styles[0], options), options.moving_frames
+    moving = f"grooms/{stage.style}-{options.strands}-moving.pelage"
+    shop.make(["simulate", stage.file, "--frames", f"1-{count}", "--motion", "turn", "--wind", "3,0,1"], [stage.file], moving)
+    scene = stage.scene(stage.distance(SHOTS["middle"]), options.dolly_size, head=False, background=(0, 0, 0))
+    scene["grooms"][0]["file"] = f"../{moving}"
+    file, psnr = stage.write("moving", scene), {}
+    for name in ("full", *SHAPES):
+        tell(shop, "render", file, *METHODS[name][1], "--frames", f"1-{count}", "-o", f"pictures/moving-{name}.####.png")
+        frames = sorted((shop.folder / "pictures").glob(f"moving-{name}.*.png"))
+        psnr[name] = [compare(shop, str(b), str(a), "--metrics", "psnr")["psnr"] for a, b in zip(frames, frames[1:])]
+    gains = [a - b for a, b in zip(psnr["thick"], psnr["full"])]
+    report.table(["PSNR between frames", "mean, dB", "least, dB"],
+                 [[METHODS[n][0], f"{statistics.mean(v):.2f}", f"{min(v):.2f}"] for n, v in psnr.items()])
+    report.numbers["motion"] = psnr
+    report.verdict("a simulated sequence: adjacent-frame PSNR never below full geometry's", min(gains) >= 0,
+                   f"least {min(gains):+.2f} dB, {sum(g >= 0 for g in gains)} of {len(gains)} steps, mean {statistics.mean(gains):+.2f} dB")
+
+
+# ---- Scattering of bundles ---------------------------------------------------------------------------------------------------------------------------
+
+
+def aggregate(shop, report, options):
+    models = {"ours": "ours", "huang": "Huang 2025", "huang-no-a1plus": "without A_1+ (figure 11)", "huang-no-s": "without S (figure 12)",
+              "huang-buffon": "Buffon's n", "huang-fitted": "fitted constants", "zhu2023": "Zhu 2023"}
+    found = bench(shop, r"^aggregate\.error\." + (r"zhu\.blond\.circle\." if options.quick else ""))
+    errors = {}
+    for (case, _), value in found.items():
+        *panel, model = case.split(".")[2:]
+        errors.setdefault(model, {})[".".join(panel)] = value
+    report.text("Scattering of bundles (figures 10, 11 and 12)", heading=True)
+    report.text("Mean of the relative errors of three profiles, over azimuth and over inclination on both sides, against path-traced bundles of 100 random fibers "
+                "(docs/derivations/aggregated_scattering.md).")
+    report.table(["", "mean over panels", "best", "worst"],
+                 [[label, f"{statistics.mean(errors[m].values()):.3f}", f"{min(errors[m].values()):.3f}", f"{max(errors[m].values()):.3f}"]
+                  for m, label in models.items() if m in errors])
+    report.numbers["aggregate"] = errors
+    closer = [p for p, e in errors["ours"].items() if e < errors["zhu2023"][p]]
+    worst = max(e / errors["zhu2023"][p] for p, e in errors["ours"].items())
+    report.verdict("aggregate closer to traced bundles than Zhu 2023 in every panel", len(closer) == len(errors["ours"]),
+                   f"{len(closer)} of {len(errors['ours'])} panels, at most {worst:.2f} of its error")
+
+
+def knit(shop, report, options):
+    report.text("Knit patches (figure 13)", heading=True)
+    kinds = [k for k in ("knit-jersey", "knit-rib") if offers(shop, "grow", k)]
+    if not kinds:
+        report.text("Left out: this program grows no knit.")
+        report.verdict("two knit patches", None, "left out: no `pelage grow knit-…`")
+        return
+    tiles = []
+    for kind in kinds:
+        file = f"grooms/{kind}.pelage"
+        shop.make(["grow", kind], [], file)
+        tiles.append([])
+        for name in ("full", "thick"):
+            output = f"pictures/{kind}-{name}.png"
+            shop.make(["render", file, "--size", f"{options.dolly_size}x{options.dolly_size}", *METHODS[name][1]], [file], output)
+            tiles[-1].append(read_png(shop.folder / output))
+    write_png(shop.folder / "knit.png", sheet(tiles))
+    report.picture("knit.png", f"{', '.join(kinds)}: all fibers, and plies as thick hairs.")
+    report.verdict("two knit patches", len(kinds) == 2, f"{', '.join(kinds)}: seen, not measured")
+
+
+# ---- The whole -----------------------------------------------------------------------------------------------------------------------------------------
+
+
+def chosen(text, known):
+    """Those of `known` that are named in `text`, A,B,…; all without it."""
+    names = {str(k): k for k in known}
+    wrong = [w for w in (text or "").split(",") if w and w not in names]
+    if wrong:
+        raise SystemExit(f"{', '.join(wrong)}: choose from {', '.join(names)}")
+    return [k for name, k in names.items() if not text or name in text.split(",")]
+
+
+def parse_options():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="few strands, pixels and cases, to see that everything works")
+    parser.add_argument("-o", "--out", default="out/lod", help="folder of everything (%(default)s)")
+    parser.add_argument("--only", default="", metavar="REGEX", help=f"parts whose names match: {', '.join(PARTS)}")
+    parser.add_argument("--pelage", default=os.environ.get("PELAGE", str(ROOT / "build/release/bin/pelage")), help="program (%(default)s)")
+    parser.add_argument("--cache", help="folder of path-traced pictures (OUT/references)")
+    for axis, known in (("styles", STYLES), ("colors", COLORS), ("lights", LIGHTS), ("shots", SHOTS)):
+        parser.add_argument(f"--{axis}", metavar="A,B", help=f"only these: {', '.join(map(str, known))}")
+    parser.add_argument("--size", type=int, help="pixels of a side, of the look (256; 32 with --quick)")
+    parser.add_argument("--samples", type=int, help="paths a pixel of the look's references (64; 4 with --quick)")
+    parser.add_argument("--strands", type=int, help="of each groom (100000; 1000 with --quick)")
+    parser.add_argument("--runs", type=int, help="paired runs of each time (5; 1 with --quick)")
+    options = parser.parse_args()
+    quick = options.quick
+    options.styles, options.shots = chosen(options.styles, STYLES[:1] if quick else STYLES), chosen(options.shots, ("middle", "far") if quick else SHOTS)
+    options.colors, options.lights = chosen(options.colors, ("light-brown",) if quick else COLORS), chosen(options.lights, LIGHTS[:1] if quick else LIGHTS)
+    options.size, options.samples = options.size or (32 if quick else 256), options.samples or (4 if quick else 64)
+    options.strands, options.runs = options.strands or (1000 if quick else 100000), options.runs or (1 if quick else 5)
+    options.whole = options.strands == 100000
+    options.tile, options.render_samples = (64, 4) if quick else (128, 16)
+    options.widths, options.shares = ((2, 8), (0.5, 0.003)) if quick else ((1, 2, 4, 8), SHARES)
+    options.speed_size, options.dolly_size = (64, 48) if quick else (1024, 256)
+    options.frames, options.moving_frames = (3, 3) if quick else (60, 48)
+    options.dolly_styles = options.styles[:1] + [s for s in options.styles[1:] if s == "curly"]
+    options.cache = options.cache or str(pathlib.Path(options.out) / "references")
+    return options
+
+
+def main():
+    options = parse_options()
+    folder, pelage = pathlib.Path(options.out).resolve(), program(options.pelage)
+    parts = [p for p in PARTS if re.search(options.only, p)]
+    if not parts:
+        raise SystemExit(f"no part matches {options.only}")
+    for name in ("scenes", "pictures"):
+        (folder / name).mkdir(parents=True, exist_ok=True)
+    shop, report = Workshop(pelage, folder), Report(folder, "Level of detail with thick hairs", "lod", ABOUT, embed=True)
+    for i, part in enumerate(parts):
+        print(f"[{i + 1}/{len(parts)}] {part}", flush=True)
+        try:
+            globals()[part](shop, report, options)
+        except Failure as failure:
+            raise SystemExit(f"{part}: pelage failed: {failure}")
+        report.write()
+    print(f"\nOpen {folder / 'index.html'}; the same as Markdown: {folder / 'lod.md'}")
+
+
+if __name__ == "__main__":
+    run(main)
