@@ -303,21 +303,23 @@ def scatter_picture(curves, x_label, y_label):
     width, height, left, top, right = 900, 380, 60, 20, 190
     points = [p for curve in curves.values() for p in curve]
     low, high = math.log(min(p[0] for p in points) / 1.2), math.log(max(p[0] for p in points) * 1.2)
-    most = 1.1 * max(p[1] for p in points)
+    least, most = 0.95 * min(p[1] for p in points), 1.05 * max(p[1] for p in points)
 
     def at(p):
-        return left + (math.log(p[0]) - low) / (high - low) * (width - left - right), top + (1 - p[1] / most) * (height - top - 50)
+        across, up = (math.log(p[0]) - low) / (high - low), (p[1] - least) / (most - least)
+        return left + across * (width - left - right), top + (1 - up) * (height - top - 50)
 
     parts = []
     for i in range(5):
-        value = most * i / 4
+        value = least + (most - least) * i / 4
         y = at((points[0][0], value))[1]
         parts.append(f'<line x1="{left}" x2="{width - right}" y1="{y:.1f}" y2="{y:.1f}" stroke="#ddd"/>'
                      f'<text x="{left - 8}" y="{y + 4:.1f}" text-anchor="end">{value:.3f}</text>')
-    for power in range(math.ceil(low / math.log(10)), math.floor(high / math.log(10)) + 1):
-        x = at((10 ** power, 0))[0]
+    ticks = [step * 10 ** power for power in range(math.floor(low / math.log(10)), math.ceil(high / math.log(10))) for step in (1, 2, 5)]
+    for tick in (t for t in ticks if low <= math.log(t) <= high):
+        x = at((tick, most))[0]
         parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{height - 50}" stroke="#ddd"/>'
-                     f'<text x="{x:.1f}" y="{height - 32}" text-anchor="middle">{10 ** power:g}</text>')
+                     f'<text x="{x:.1f}" y="{height - 32}" text-anchor="middle">{tick:,g}</text>')
     parts.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">{x_label}</text><text x="{left}" y="14">{y_label}</text>')
     for i, (name, curve) in enumerate(curves.items()):
         ink = "#000" if i == 0 else INKS[(i - 1) % len(INKS)]
@@ -422,10 +424,11 @@ def dolly_tables(shop, report, style, away, psnr, ratios):
     report.verdict(f"dolly, {style}: adjacent-frame PSNR never below full geometry's", min(gains) >= 0,
                    f"least {min(gains):+.2f} dB, {sum(g >= 0 for g in gains)} of {len(gains)} steps, mean {statistics.mean(gains):+.2f} dB")
     for at, what in enumerate(("coverage", "radiance")):
-        curves = {labels[n]: {1 / d: v[at] for d, v in zip(away, values)} for n, values in ratios.items()}
+        near = [round(1 / d, 3) for d in away]
+        curves = {labels[n]: {x: v[at] for x, v in zip(near, values)} for n, values in ratios.items()}
         file = f"dolly-{style}-{what}.svg"
-        (shop.folder / file).write_text(curve_picture(curves, [round(1 / d, 3) for d in away[::max(1, len(away) // 6)]], what, 0.02))
-        report.picture(file, f"{style}: {what} over that of all strands, by 1 / distance; gray: within 2 %.")
+        (shop.folder / file).write_text(curve_picture(curves, near, what, 0.02, near[::max(1, len(near) // 6)]))
+        report.picture(file, f"{style}: {what} over that of all strands, by 1 / meters of distance; gray: within 2 %.")
         values = [v[at] for v in ratios["thick"]]
         steps = [abs(b / a - 1) for a, b in zip(values, values[1:])]
         report.verdict(f"dolly, {style}: mean hair {what} within 2 % across every level change", max(abs(v - 1) for v in values) <= 0.02,

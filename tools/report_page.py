@@ -87,8 +87,8 @@ def bench(shop, regex):
 COLORS = ("#1b6ca8", "#d1495b", "#edae49", "#2e933c", "#6a4c93", "#555555")
 
 
-def curve_picture(curve, heights, metric, band=0.03):
-    """An SVG of all curves {name: {x: ratio}} over the logarithm of x, largest first; gray: within `band` of 1."""
+def curve_picture(curve, heights, metric, band=0.03, ticks=None):
+    """An SVG of all curves {name: {x: ratio}} over the logarithm of x, largest first; gray: within `band` of 1; ticks at `heights`, or fewer."""
     width, height, left, top = 900, 380, 60, 20
     low, high = math.log(min(heights) / 1.1), math.log(max(heights) * 1.1)
     values = [v for points in curve.values() for v in points.values()]
@@ -103,7 +103,7 @@ def curve_picture(curve, heights, metric, band=0.03):
     parts = [f'<rect x="{left}" y="{y(1 + band):.1f}" width="{width - left - 120}" height="{y(1 - band) - y(1 + band):.1f}" fill="#eee"/>',
              f'<line x1="{left}" x2="{width - 120}" y1="{y(1):.1f}" y2="{y(1):.1f}" stroke="#aaa"/>']
     parts += [f'<text x="{left - 8}" y="{y(v) + 4:.1f}" text-anchor="end">{v:.2f}</text>' for v in (1 - band, 1, 1 + band)]
-    parts += [f'<text x="{x(h):.1f}" y="{height - 25}" text-anchor="middle">{h}</text>' for h in heights]
+    parts += [f'<text x="{x(h):.1f}" y="{height - 25}" text-anchor="middle">{h}</text>' for h in ticks or heights]
     for i, (style, points) in enumerate(curve.items()):
         line = " ".join(f"{x(h):.1f},{y(points[h]):.1f}" for h in heights if h in points)
         parts.append(f'<polyline points="{line}" fill="none" stroke="{COLORS[i % 6]}" stroke-width="2"/>')
