@@ -84,7 +84,7 @@ def bench(shop, regex):
     return {(line["case"], line["metric"]): line["value"] for line in lines if "value" in line}
 
 
-COLORS = ("#1b6ca8", "#d1495b", "#edae49", "#2e933c", "#6a4c93", "#555555")
+INKS = ("#1b6ca8", "#d1495b", "#edae49", "#2e933c", "#6a4c93", "#555555")
 
 
 def curve_picture(curve, heights, metric, band=0.03, ticks=None):
@@ -106,7 +106,40 @@ def curve_picture(curve, heights, metric, band=0.03, ticks=None):
     parts += [f'<text x="{x(h):.1f}" y="{height - 25}" text-anchor="middle">{h}</text>' for h in ticks or heights]
     for i, (style, points) in enumerate(curve.items()):
         line = " ".join(f"{x(h):.1f},{y(points[h]):.1f}" for h in heights if h in points)
-        parts.append(f'<polyline points="{line}" fill="none" stroke="{COLORS[i % 6]}" stroke-width="2"/>')
-        parts.append(f'<text x="{width - 112}" y="{top + 14 + 18 * i}" fill="{COLORS[i % 6]}">{style}</text>')
+        parts.append(f'<polyline points="{line}" fill="none" stroke="{INKS[i % 6]}" stroke-width="2"/>')
+        parts.append(f'<text x="{width - 112}" y="{top + 14 + 18 * i}" fill="{INKS[i % 6]}">{style}</text>')
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">'
             f'<title>{metric}</title><rect width="{width}" height="{height}" fill="#fff"/>{"".join(parts)}</svg>\n')
+
+
+def scatter_picture(curves, x_label, y_label):
+    """An SVG of points {name: [(x, y)]}, joined in order, over the logarithm of x."""
+    width, height, left, top, right = 900, 380, 60, 20, 190
+    points = [p for curve in curves.values() for p in curve]
+    low, high = math.log(min(p[0] for p in points) / 1.2), math.log(max(p[0] for p in points) * 1.2)
+    least, most = 0.95 * min(p[1] for p in points), 1.05 * max(p[1] for p in points)
+
+    def at(p):
+        across, up = (math.log(p[0]) - low) / (high - low), (p[1] - least) / (most - least)
+        return left + across * (width - left - right), top + (1 - up) * (height - top - 50)
+
+    parts = []
+    for i in range(5):
+        value = least + (most - least) * i / 4
+        y = at((points[0][0], value))[1]
+        parts.append(f'<line x1="{left}" x2="{width - right}" y1="{y:.1f}" y2="{y:.1f}" stroke="#ddd"/>'
+                     f'<text x="{left - 8}" y="{y + 4:.1f}" text-anchor="end">{value:.3f}</text>')
+    ticks = [step * 10 ** power for power in range(math.floor(low / math.log(10)), math.ceil(high / math.log(10))) for step in (1, 2, 5)]
+    for tick in (t for t in ticks if low <= math.log(t) <= high):
+        x = at((tick, most))[0]
+        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{height - 50}" stroke="#ddd"/>'
+                     f'<text x="{x:.1f}" y="{height - 32}" text-anchor="middle">{tick:,g}</text>')
+    parts.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">{x_label}</text><text x="{left}" y="14">{y_label}</text>')
+    for i, (name, curve) in enumerate(curves.items()):
+        ink = "#000" if i == 0 else INKS[(i - 1) % len(INKS)]
+        places = [at(p) for p in curve]
+        parts.append(f'<polyline points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in places)}" fill="none" stroke="{ink}" stroke-width="2"/>')
+        parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{ink}"/>' for x, y in places]
+        parts.append(f'<text x="{width - right + 12}" y="{top + 14 + 18 * i}" fill="{ink}">{name}</text>')
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">'
+            f'<title>{y_label} over {x_label}</title><rect width="{width}" height="{height}" fill="#fff"/>{"".join(parts)}</svg>\n')
