@@ -549,6 +549,7 @@ def parse_options():
     parser.add_argument("--size", type=int, help="pixels of a side, of the look (256; 32 with --quick)")
     parser.add_argument("--samples", type=int, help="paths a pixel of the look's references (64; 4 with --quick)")
     parser.add_argument("--strands", type=int, help="of each groom (100000; 1000 with --quick)")
+    parser.add_argument("--frames", type=int, help="of the dolly (60; 3 with --quick)")
     parser.add_argument("--runs", type=int, help="paired runs of each time (5; 1 with --quick)")
     options = parser.parse_args()
     quick = options.quick
@@ -560,7 +561,7 @@ def parse_options():
     options.tile, options.render_samples = (64, 4) if quick else (128, 16)
     options.widths, options.shares = ((2, 8), (0.5, 0.003)) if quick else ((1, 2, 4, 8), SHARES)
     options.speed_size, options.dolly_size = (64, 48) if quick else (1024, 256)
-    options.frames, options.moving_frames = (3, 3) if quick else (60, 48)
+    options.frames, options.moving_frames = options.frames or (3 if quick else 60), 3 if quick else 48
     options.dolly_styles = options.styles[:1] + [s for s in options.styles[1:] if s == "curly"]
     options.cache = options.cache or str(pathlib.Path(options.out) / "references")
     return options
