@@ -5,7 +5,7 @@
 namespace pelage::fiber_models {
 namespace {
 
-constexpr int kAround = 12, kPerPair = 6;  ///< azimuths of what is wide, and of a pair of lobes
+constexpr int kAround = 16, kPerPair = 8;  ///< azimuths of what is wide, and of a pair of lobes
 constexpr float kKept = 0.99f;             ///< of the backward lobe, for what the quadrature is off
 
 using Place = std::optional<BundlePlace>;

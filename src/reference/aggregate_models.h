@@ -8,7 +8,7 @@ namespace pelage::fiber_models {
 /// Largest difference of Aggregate::albedo() from the integral of value().
 inline constexpr float kAggregateAlbedoMaxError = 8e-3f;
 /// Value over density of a direction that is drawn; luminance.
-inline constexpr float kBalancedMaxWeight = 3.2f;
+inline constexpr float kBalancedMaxWeight = 3.6f;
 
 /// scatter_shares() toward azimuth phi, or the same at a place.
 kernel::ScatterShares shares_toward(const kernel::ScatterAggregate& a, const std::optional<BundlePlace>& place, float phi);
