@@ -5,6 +5,7 @@ namespace pelage::bench {
 
 void add_io_cases(Suite& suite);
 void add_lod_cases(Suite& suite);
+void add_simulate_cases(Suite& suite);
 void add_assemble_cases(Suite& suite);
 void add_raster_cases(Suite& suite);
 void add_light_cases(Suite& suite);
@@ -23,6 +24,7 @@ Suite all_cases() {
   Suite suite;
   add_io_cases(suite);
   add_lod_cases(suite);
+  add_simulate_cases(suite);
   add_assemble_cases(suite);
   add_raster_cases(suite);
   add_light_cases(suite);

@@ -103,6 +103,14 @@ Json to_json(const RepairReport& r) {
           {"dropped", r.dropped}};
 }
 
+Json to_json(const GuideAnimation& a, std::size_t guides) {
+  return {{"first_frame", a.first_frame},
+          {"last_frame", a.last_frame()},
+          {"frame_rate", a.frame_rate},
+          {"guides", guides},
+          {"bytes", a.guides.size() * sizeof(Vec3) + a.head.size() * sizeof(Affine)}};
+}
+
 Json groom_info(const std::string& path, const ImportOptions& options) {
   ImportReport report;
   ProgressLine line;
@@ -126,7 +134,10 @@ Json groom_info(const std::string& path, const ImportOptions& options) {
             {"bytes", resident_bytes(set)},
             {"repairs", to_json(report.repairs)},
             {"notes", report.notes}};
-  if (const LodHierarchy lod = read_lod(path, line.callback()); !lod.empty()) json["lod"] = lod_json(lod, set);
+  if (const LodHierarchy lod = read_lod(path, line.callback()); !lod.empty()) {
+    json["lod"] = lod_json(lod, set);
+    if (lod.animation) json["animation"] = to_json(*lod.animation, lod.guide_count());
+  }
   return json;
 }
 
@@ -258,6 +269,12 @@ void print_groom(const Json& json) {
   row("repairs", json["repairs"]["summary"]);
   row("memory", size_of_file(json["bytes"]));
   for (const Json& note : json["notes"]) row("note", note);
+  if (json.contains("animation")) {
+    const Json& a = json["animation"];
+    row("animation",
+        fmt::format("frames {} to {}, {:g} a second, {} guides, {}", a["first_frame"].get<int>(), a["last_frame"].get<int>(),
+                    a["frame_rate"].get<double>(), a["guides"].get<std::size_t>(), size_of_file(a["bytes"])));
+  }
   if (!json.contains("lod")) return;
   const char* name = "thick hairs";
   for (const std::string& text : lod_rows(json["lod"])) row(std::exchange(name, ""), text);

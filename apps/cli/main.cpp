@@ -21,6 +21,7 @@ void add_verbs(CLI::App& app) {
   add_grow(app);
   add_fit(app);
   add_lod(app);
+  add_simulate(app);
   add_info(app);
   add_convert(app);
   add_render(app);

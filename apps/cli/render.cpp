@@ -14,6 +14,7 @@
 #include "core/check.h"
 #include "frame/sample_positions.h"
 #include "io/scene_tables.h"
+#include "frame_list.h"
 #include "picture_file.h"
 #include "terminal.h"
 #include "verbs.h"
@@ -33,8 +34,9 @@ std::vector<std::string> channels_of_layer(const std::string& name) {
   return {""};
 }
 
-// Appends the channels of other views of the same scene: their own passes, without light.
-void append_layers(const Scene& scene, const std::vector<std::string>& layers, const Progress& progress, Image& image) {
+// Appends the channels of other views of the same scene, which was `before` a frame ago: their own passes, without light.
+void append_layers(const Scene& before, const Scene& scene, const std::vector<std::string>& layers, const Progress& progress,
+                   Image& image) {
   static const std::vector<std::pair<std::string, View>> kLayers{
       {"Z", View::kDepth},         {"coverage", View::kCoverage}, {"id", View::kStrandId},       {"u", View::kU},
       {"tangent", View::kTangent}, {"albedo", View::kAlbedo},     {"overdraw", View::kOverdraw}, {"motion", View::kMotion}};
@@ -43,7 +45,9 @@ void append_layers(const Scene& scene, const std::vector<std::string>& layers, c
     PELAGE_CHECK(layer != kLayers.end());
     Scene pass = scene;
     pass.settings.view = layer->second;
-    const Image data = render(pass, progress).linear;
+    Scene earlier = before;
+    earlier.settings = pass.settings, earlier.previous_camera = pass.previous_camera;
+    const Image data = PictureSequence(std::move(earlier)).next(std::move(pass), progress).linear;
     std::vector<std::string> names = image.channels;
     for (const std::string& suffix : channels_of_layer(name)) names.push_back(name + suffix);
     Image merged(image.width, image.height, names);
@@ -57,11 +61,11 @@ void append_layers(const Scene& scene, const std::vector<std::string>& layers, c
 }
 
 // One file, or with %V in its name one for each eye.
-void write_output(const std::string& path, const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                  const Progress& progress) {
+void write_output(const std::string& path, const RenderOptions& options, const Scene& before, const Scene& scene,
+                  const RenderResult& result, const Progress& progress) {
   const bool more = extension_of(path) == "exr" && !options.layers.empty();
   Image layered;
-  if (more) layered = result.linear, append_layers(scene, options.layers, progress, layered);
+  if (more) layered = result.linear, append_layers(before, scene, options.layers, progress, layered);
   const Image& linear = more ? layered : result.linear;
   const auto write = [&](const std::string& file, const Image& data, const Image& display) {
     if (!write_flat_picture(file, data, display, scene.settings.transparent_background))
@@ -82,32 +86,67 @@ void add_stats(std::vector<StageStat>& total, const std::vector<StageStat>& stat
   }
 }
 
-// Renders the pictures that the options ask for, one camera after another, and writes each. Numbered files take every picture,
+// The pictures that the options ask for: cameras and, of hair that moves, frames, by their numbers.
+class Shots {
+ public:
+  Shots(const RenderOptions& options, const Scene& rest) : rest_(rest), options_(options) {
+    const std::optional<FrameRange> moving = animated_frames(rest);
+    const int all = moving ? moving->last - moving->first + 1 : kDefaultPictures;
+    count_ = makes_sequence(options) ? options.frames.value_or(all) : 1;
+    first_ = moving ? moving->first : 1;
+    if (options.frame_range) first_ = options.frame_range->first, count_ = options.frame_range->last - first_ + 1;
+    if (options.frame) first_ = *options.frame, count_ = 1;
+    moves_ = moving && (makes_sequence(options) || options.frame);
+    if (options.frame || (moving && options.frame_range))
+      check_frames(options.frame ? "--frame" : "--frames", rest, {first_, last()});
+  }
+
+  int count() const { return count_; }
+  bool moves() const { return moves_; }
+  int number(int i) const { return first_ + i; }
+  /// Picture i, −1 for what was there before the first.
+  Scene scene(int i) const {
+    Scene scene = moves_ ? at_frame(rest_, number(i), options_.still_meshes) : rest_;
+    scene.camera = camera(i);
+    scene.previous_camera = i > 0 ? camera(i - 1) : rest_.previous_camera;
+    return scene;
+  }
+
+ private:
+  int last() const { return first_ + count_ - 1; }
+  Camera camera(int i) const { return turned(rest_.camera, options_.orbit.value_or(0.f) * static_cast<float>(std::max(i, 0))); }
+
+  const Scene& rest_;
+  const RenderOptions& options_;
+  int first_ = 1, count_ = 1;
+  bool moves_ = false;
+};
+
+// Renders the pictures that the options ask for, one after another, and writes each. Numbered files take every picture,
 // others the last; methods that take nothing over from picture to picture skip what nobody asked for.
-RenderResult render_pictures(const RenderOptions& options, Scene scene, const Progress& progress) {
-  const bool all = scene.settings.method == Method::kTaa || scene.settings.method == Method::kLinkTaa ||
+RenderResult render_pictures(const RenderOptions& options, const Scene& rest, const Progress& progress) {
+  const bool all = rest.settings.method == Method::kTaa || rest.settings.method == Method::kLinkTaa ||
                    std::any_of(options.outputs.begin(), options.outputs.end(), is_numbered);
-  const int pictures = makes_sequence(options) ? options.frames.value_or(kDefaultPictures) : 1;
-  const Camera start = scene.camera;
-  const auto camera_at = [&](int i) { return turned(start, options.orbit.value_or(0.f) * static_cast<float>(i)); };
+  const Shots shots(options, rest);
   std::vector<StageStat> stats;
   StageStat writing{"io.write", 0, 0, 0, "files"};
   RenderResult result;
-  const int first = all ? 0 : pictures - 1;
-  if (first > 0) scene.previous_camera = camera_at(first - 1);
-  PictureSequence sequence(scene);
-  for (int i = first; i < pictures; ++i) {
-    if (i > 0) scene.previous_camera = camera_at(i - 1);
-    scene.camera = camera_at(i);
-    result = sequence.next(scene.camera, progress);
+  const int first = all ? 0 : shots.count() - 1;
+  Scene before = shots.scene(first - 1);
+  before.previous_camera = shots.scene(first).previous_camera;
+  PictureSequence sequence(before);
+  for (int i = first; i < shots.count(); ++i) {
+    Scene scene = shots.scene(i);
+    result = shots.moves() ? sequence.next(scene, progress) : sequence.next(scene.camera, progress);
     add_stats(stats, result.stats);
     const auto wrote = std::chrono::steady_clock::now();
     for (const std::string& path : options.outputs) {
-      if (i + 1 < pictures && !is_numbered(path)) continue;
-      write_output(numbered(path, i + 1), options, scene, result, progress);
+      if (i + 1 < shots.count() && !is_numbered(path)) continue;
+      write_output(numbered(path, shots.number(i)), options, before, scene, result, progress);
       writing.items += is_for_each_eye(path) ? 2 : 1;
     }
     writing.seconds += seconds_since(wrote);
+    before = std::move(scene);
   }
   result.stats = std::move(stats);
   result.stats.push_back(writing);
@@ -141,7 +180,7 @@ void render_verb(const RenderOptions& options) {
     scene = make_scene(options, progress, notes);
     check_eyes(options, scene.camera);
     const double read_seconds = seconds_since(start);
-    if (!options.gbuffer.empty()) write_gbuffer(options, scene, progress);
+    if (!options.gbuffer.empty()) write_gbuffer(options, at_chosen_frame(options, scene), progress);
     if (!options.outputs.empty()) result = render_pictures(options, scene, progress);
     result.stats.insert(result.stats.begin(), {"io.read", read_seconds, 0, scene.grooms.size() + scene.meshes.size(), "files"});
   }
@@ -159,9 +198,17 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
   verb.add_option("--spp", o.samples,
                   "Samples per pixel; msaa: 1, 2, 4, 8 or 16; link: 1, 4, 9 or 16; swr: 1, 2, 4 or 8; ssaa: any number")
       ->check(CLI::Range(1, 4096));
-  verb.add_option("--frames", o.frames,
-                  "Pictures of a sequence (an output like out.####.exr, or --orbit); else frames that taa blends")
-      ->check(CLI::Range(1, 4096));
+  verb.add_option_function<std::string>(
+          "--frames",
+          [&o](const std::string& text) {
+            const FrameList list = parse_frames("--frames", text);
+            o.frames = list.count, o.frame_range = list.range;
+          },
+          "Pictures of a sequence (an output like out.####.exr, or --orbit): how many, or the first and the last frame of hair "
+          "that "
+          "moves; else frames that taa blends")
+      ->type_name("N or A-B");
+  add_frame_options(verb, o);
   verb.add_option("--orbit", o.orbit, "Degrees that the camera goes around the target from picture to picture")
       ->check(CLI::Range(-360.0, 360.0));
   verb.add_flag("--stereo{0.063}", o.stereo,
@@ -215,7 +262,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
 }  // namespace
 
 bool makes_sequence(const RenderOptions& options) {
-  return options.orbit || std::any_of(options.outputs.begin(), options.outputs.end(), is_numbered);
+  return options.orbit || options.frame_range || std::any_of(options.outputs.begin(), options.outputs.end(), is_numbered);
 }
 
 void add_render(CLI::App& app) {

@@ -14,6 +14,7 @@
 
 #include "core/nearest.h"
 #include "frame/sample_positions.h"
+#include "frame_list.h"
 #include "io/byte_source.h"
 #include "io/file_kind.h"
 #include "io/hair_mesh_formats.h"
@@ -264,6 +265,18 @@ Camera turned(Camera camera, float degrees) {
   const Vec3 d = camera.eye - camera.target;
   camera.eye = camera.target + Vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
   return camera;
+}
+
+void add_frame_options(CLI::App& verb, RenderOptions& o) {
+  verb.add_option("--frame", o.frame, "Frame of hair that moves (pelage simulate), by its number; else it is at rest")
+      ->type_name("N");
+  verb.add_flag("--still-meshes", o.still_meshes, "Meshes stay when hair moves; else they go with its head");
+}
+
+Scene at_chosen_frame(const RenderOptions& options, Scene scene) {
+  if (!options.frame) return scene;
+  check_frames("--frame", scene, {*options.frame, *options.frame});
+  return at_frame(scene, *options.frame, options.still_meshes);
 }
 
 Scene make_scene(const RenderOptions& options, const Progress& progress, std::vector<std::string>& notes) {

@@ -115,6 +115,7 @@ void write_gbuffer(TraceOptions o) {
     ProgressLine line;
     const Progress progress = line.callback();
     Scene scene = make_scene(o.scene, progress, notes);
+    scene = at_chosen_frame(o.scene, std::move(scene));
     scene.settings.width *= side, scene.settings.height *= side;
     write_image(o.scene.gbuffer, trace(scene, o.settings, progress).linear, true);
   }
@@ -132,6 +133,7 @@ void trace_verb(TraceOptions o) {
     ProgressLine line;
     const Progress progress = line.callback();
     Scene scene = make_scene(o.scene, progress, notes);
+    scene = at_chosen_frame(o.scene, std::move(scene));
     if (o.scene.orbit) scene.previous_camera = turned(scene.camera, -*o.scene.orbit);
     if (o.lod) scene = with_thick_hairs(scene);
     result = trace(scene, o.settings, progress);
@@ -166,6 +168,7 @@ void add_trace_options(CLI::App& verb, TraceOptions& o) {
       verb.add_flag("--lod", o.lod, "Thick hairs as `render` draws them where the groom has them, instead of all strands");
   for (CLI::Option* option : add_thick_hair_options(verb, o.scene)) option->needs(lod);
   verb.add_flag("--raster-positions", o.settings.raster_positions, "Samples where those of `render --spp` with as many stand");
+  add_frame_options(verb, o.scene);
   verb.add_option("--orbit", o.scene.orbit,
                   "Degrees that the camera came around the target since the frame before, for the layer motion")
       ->check(CLI::Range(-3600.0, 3600.0));

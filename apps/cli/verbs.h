@@ -17,6 +17,7 @@ void add_render(CLI::App& app);
 void add_grow(CLI::App& app);
 void add_fit(CLI::App& app);
 void add_lod(CLI::App& app);
+void add_simulate(CLI::App& app);
 void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_compare(CLI::App& app);

@@ -16,6 +16,8 @@
 
 namespace pelage {
 
+struct GuideAnimation;  // <pelage/animation.h>
+
 /// One thick hair: whom it stands for, and its place in the tree. Its curves stand in LodHierarchy under its index.
 struct ThickHair {
   std::uint32_t first_strand = 0;  ///< of its strands in LodHierarchy::order
@@ -66,6 +68,8 @@ struct LodHierarchy {
                                      ///< hair there is than a straight bundle of it would hold; > 0
   std::vector<Vec3> colors;          ///< [0] or [hair_count] mean linear reflectance, where the groom has colors
   std::vector<Vec2> root_uv;         ///< [0] or [hair_count] mean texture coordinate of the roots, where the groom has them
+
+  std::shared_ptr<const GuideAnimation> animation;  ///< of the guides, by pelage simulate; or null. Everything above is at rest
 
   std::size_t levels() const { return level_offsets.empty() ? 0 : level_offsets.size() - 1; }
   std::size_t hair_count() const { return hairs.size(); }

@@ -1,6 +1,7 @@
 // Everything public at once.
 #pragma once
 
+#include <pelage/animation.h>
 #include <pelage/denoise.h>
 #include <pelage/error.h>
 #include <pelage/grow.h>
@@ -15,6 +16,7 @@
 #include <pelage/render.h>
 #include <pelage/runtime.h>
 #include <pelage/scene.h>
+#include <pelage/simulate.h>
 #include <pelage/strand_set.h>
 #include <pelage/trace.h>
 #include <pelage/triangle_mesh.h>

@@ -37,8 +37,8 @@ RenderResult render(const Scene& scene, const Progress& progress = {});
 /// are seen from everywhere, but chosen by their width on the screen. Throws Error on settings out of range.
 Scene with_thick_hairs(const Scene& scene);
 
-/// Pictures of one scene from a camera that may move from picture to picture. Light maps and the trees of the meshes,
-/// which no camera changes, are made once, and Method::kTaa goes on from picture to picture: the first is that of a camera
+/// Pictures of one scene from a camera that may move from picture to picture, or of one whose hair and meshes move as well. Light maps and
+/// the trees of the meshes, which no camera changes, are made once for each pose, and Method::kTaa goes on from picture to picture: the first is that of a camera
 /// that stood still for `settings.frames` frames, those after it take one frame each.
 class PictureSequence {
  public:
@@ -50,6 +50,11 @@ class PictureSequence {
 
   /// The next picture. Without temporal methods it is what render() makes of the scene with this camera.
   RenderResult next(const Camera& camera, const Progress& progress = {});
+
+  /// The next picture, of things that have moved: what at_frame() (<pelage/animation.h>) makes of the same scene. Motion is from
+  /// where the picture before, or the scene of the constructor, had things; the camera is that of `moved`, and its settings are
+  /// not read. Throws Error where its grooms and meshes are not as many and of as many points.
+  RenderResult next(Scene moved, const Progress& progress = {});
 
  private:
   struct State;

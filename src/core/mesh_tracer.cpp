@@ -45,6 +45,7 @@ MeshTracer::MeshTracer(const std::vector<MeshInstance>& meshes) : state_(std::ma
 
 MeshTracer::~MeshTracer() = default;
 MeshTracer::MeshTracer(MeshTracer&&) noexcept = default;
+MeshTracer& MeshTracer::operator=(MeshTracer&&) noexcept = default;
 
 bool MeshTracer::empty() const { return state_->scene == nullptr; }
 const Bounds& MeshTracer::bounds() const { return state_->bounds; }

@@ -19,6 +19,7 @@ class MeshTracer {
   explicit MeshTracer(const std::vector<MeshInstance>& meshes);
   ~MeshTracer();
   MeshTracer(MeshTracer&&) noexcept;
+  MeshTracer& operator=(MeshTracer&&) noexcept;
 
   bool empty() const;
   const Bounds& bounds() const;

@@ -29,16 +29,19 @@ Image paint_motion(const Buffer<Vec2>& motion, const Buffer<float>& depth, int w
 
 }  // namespace
 
-Buffer<Vec2> motion_vectors(const CameraView& view, const CameraView& before, const Buffer<float>& depth) {
+Buffer<Vec2> motion_vectors(const CameraView& view, const CameraView& before, const Buffer<float>& depth,
+                            const Buffer<Vec3>& way) {
   const auto width = static_cast<std::size_t>(view.width), height = static_cast<std::size_t>(view.height);
   PELAGE_CHECK_EQ(depth.size(), width * height);
+  PELAGE_CHECK(way.empty() || way.size() == depth.size());
   const Vec2 outside(2 * static_cast<float>(view.width), 2 * static_cast<float>(view.height));
   Buffer<Vec2> motion(width * height);
   parallel_for(height, kRowsPerTask, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first * width; p < last * width; ++p) {
       const Vec2 at(static_cast<float>(p % width) + 0.5f, static_cast<float>(p / width) + 0.5f);
       // Back through `view` itself, so that rounding cancels and a still camera moves nothing at all.
-      const Seen now = reproject(view, view, at, depth[p]), then = reproject(view, before, at, depth[p]);
+      const Seen now = reproject(view, view, at, depth[p]),
+                 then = reproject(view, before, at, depth[p], way.empty() ? Vec3() : way[p]);
       motion[p] = then.visible ? then.at - now.at : outside;
     }
   });

@@ -1,4 +1,4 @@
-// Motion vectors: where on the screen things were a frame ago. Strands and meshes stand still, the camera moves.
+// Motion vectors: where on the screen things were a frame ago.
 #pragma once
 
 #include <pelage/image.h>
@@ -12,8 +12,10 @@ namespace pelage {
 /// still makes zeros. What `before` had behind its near plane points twice the picture's size away, outside.
 ///
 /// depth: [h·w] camera z at the pixel's center, metres, +inf for nothing (then the direction of view counts).
+/// way: [h·w] metres, world: from where what is there is to where it was a frame ago; empty where only the camera moves.
 /// Rows in parallel, O(pixels).
-Buffer<Vec2> motion_vectors(const CameraView& view, const CameraView& before, const Buffer<float>& depth);
+Buffer<Vec2> motion_vectors(const CameraView& view, const CameraView& before, const Buffer<float>& depth,
+                            const Buffer<Vec3>& way = {});
 
 /// The vectors for files: R and G in pixels, B 0, A 1 where there is something. O(pixels).
 Image motion_data(const Buffer<Vec2>& motion, const Buffer<float>& depth, int width, int height);

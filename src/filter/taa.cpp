@@ -15,10 +15,11 @@ namespace {
 
 constexpr std::size_t kRowsPerTask = 4;
 
-/// Something seen: where on the screen, and how far.
+/// Something seen: where on the screen, how far, and which pixel's it is.
 struct Sample {
   Vec2 at;
   float depth;
+  std::size_t pixel;
 };
 
 /// Depths of a frame's samples, its border continued outside.
@@ -40,7 +41,7 @@ class DepthField {
   Sample at(int x, int y) const {
     x = std::clamp(x, 0, width_ - 1), y = std::clamp(y, 0, height_ - 1);
     const std::size_t p = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-    return {{static_cast<float>(x) + position_.x, static_cast<float>(y) + position_.y}, (*depth_)[p]};
+    return {{static_cast<float>(x) + position_.x, static_cast<float>(y) + position_.y}, (*depth_)[p], p};
   }
 
   const Buffer<float>* depth_;
@@ -109,19 +110,23 @@ void blend(Vec4 history, float share, float* rgba) {
 /// Finds again what a pixel sees in the frame before.
 class Reprojection {
  public:
-  Reprojection(DepthField now, const CameraView& view, DepthField then, const CameraView& before, float same_place)
-      : now_(now), then_(then), view_(view), before_(before), same_place_(same_place) {}
+  /// `way`: as TaaFrame::way, of the frame `now` is of.
+  Reprojection(DepthField now, const CameraView& view, DepthField then, const CameraView& before, const Buffer<Vec3>& way,
+               float same_place)
+      : now_(now), then_(then), view_(view), before_(before), way_(way), same_place_(same_place) {}
 
   /// The place of pixel (x, y) in the history's picture; none where it is outside, or shows something else: what was seen
   /// there has since moved otherwise than what is seen here.
   std::optional<Vec2> place_of(int x, int y) const {
-    const std::optional<Vec2> motion = motion_of(now_.nearest_around(x, y), view_, before_);
+    const Sample here = now_.nearest_around(x, y);
+    const Vec3 way = way_.empty() ? Vec3() : way_[here.pixel];
+    const std::optional<Vec2> motion = motion_of(here, view_, before_, way);
     if (!motion) return {};
     const Vec2 place = Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) + *motion;
     if (!(place.x >= 0 && place.x < static_cast<float>(view_.width))) return {};
     if (!(place.y >= 0 && place.y < static_cast<float>(view_.height))) return {};
     const Sample there = then_.nearest_around(static_cast<int>(place.x), static_cast<int>(place.y));
-    const std::optional<Vec2> back = motion_of(there, before_, view_);
+    const std::optional<Vec2> back = motion_of(there, before_, view_, -way);
     if (!back) return {};
     const Vec2 apart = *motion + *back;
     if (apart.x * apart.x + apart.y * apart.y > same_place_ * same_place_) return {};
@@ -129,9 +134,9 @@ class Reprojection {
   }
 
  private:
-  static std::optional<Vec2> motion_of(const Sample& s, const CameraView& from, const CameraView& to) {
+  static std::optional<Vec2> motion_of(const Sample& s, const CameraView& from, const CameraView& to, Vec3 way) {
     // Through its own view as well, so that rounding cancels: a still camera moves nothing at all.
-    const Seen start = reproject(from, from, s.at, s.depth), end = reproject(from, to, s.at, s.depth);
+    const Seen start = reproject(from, from, s.at, s.depth), end = reproject(from, to, s.at, s.depth, way);
     if (!end.visible) return {};
     return end.at - start.at;
   }
@@ -139,6 +144,7 @@ class Reprojection {
   DepthField now_, then_;
   const CameraView& view_;
   const CameraView& before_;
+  const Buffer<Vec3>& way_;
   float same_place_;
 };
 
@@ -149,6 +155,7 @@ void TaaHistory::add(TaaFrame frame) {
   const std::size_t columns = static_cast<std::size_t>(width), pixels = columns * static_cast<std::size_t>(height);
   PELAGE_CHECK_EQ(frame.color.channel_count(), 4u);
   PELAGE_CHECK_EQ(frame.depth.size(), pixels);
+  PELAGE_CHECK(frame.way.empty() || frame.way.size() == pixels);
   if (color_.pixels.empty()) {
     age_.resize(pixels), age_.fill(1);
     color_ = std::move(frame.color), depth_ = std::move(frame.depth);
@@ -157,7 +164,7 @@ void TaaHistory::add(TaaFrame frame) {
   }
   PELAGE_CHECK_EQ(color_.pixels.size(), frame.color.pixels.size());
   const Reprojection reprojection({frame.depth, width, height, frame.position}, frame.view, {depth_, width, height, position_},
-                                  view_, settings_.same_place);
+                                  view_, frame.way, settings_.same_place);
   Image result = frame.color;
   Buffer<float> age(pixels);
   parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t first, std::size_t last) {

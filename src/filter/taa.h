@@ -26,6 +26,7 @@ struct TaaFrame {
   Buffer<float> depth;  ///< [h·w] camera z of what the sample sees, metres, +inf for nothing
   CameraView view;      ///< without jitter
   Vec2 position;
+  Buffer<Vec3> way = {};  ///< [h·w] metres, world: from where it is to where it was in the frame before; empty: nothing moved
 };
 
 /// The picture so far, and what it takes to go on.

@@ -82,6 +82,16 @@ Affine compose(const Affine& a, const Affine& b) {
   return r;
 }
 
+Affine inverse_of_similarity(const Affine& a) {
+  const float scale = similarity_scale(a), share = 1 / (scale * scale);
+  Affine r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) r.m[i][j] = a.m[j][i] * share;
+  const Vec3 back = transform_vector(r, Vec3(a.m[0][3], a.m[1][3], a.m[2][3]));
+  r.m[0][3] = -back.x, r.m[1][3] = -back.y, r.m[2][3] = -back.z;
+  return r;
+}
+
 float similarity_scale(const Affine& a) { return length(Vec3(a.m[0][0], a.m[1][0], a.m[2][0])); }
 
 CameraView make_camera_view(const Camera& camera, int width, int height) {

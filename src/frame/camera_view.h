@@ -17,6 +17,9 @@ CameraView make_camera_view(const Camera& camera, int width, int height);
 /// a ∘ b: first b, then a.
 Affine compose(const Affine& a, const Affine& b);
 
+/// The inverse of a similarity.
+Affine inverse_of_similarity(const Affine& a);
+
 /// The one scale factor of a similarity: length of its first column.
 float similarity_scale(const Affine& a);
 

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "frame/camera_view.h"
 #include "frame/one_frame.h"
+#include "frame/ways_back.h"
 #include "raster/opaque.h"
 #include "raster/keys.h"
 #include "raster/raster.h"
@@ -142,7 +143,7 @@ Image render_frame(const FrameInputs& inputs, std::span<const Vec2> positions, S
   return linear;
 }
 
-Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages) {
+Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages, Buffer<Vec3>* way) {
   GBuffer gbuffer;
   gbuffer.opaque_depth = trace_opaque(inputs.scene, inputs.view, std::array{kPixelCenter}, inputs.meshes, inputs.rig).depth;
   stages.run("raster", "segments", [&](const Progress& progress) {
@@ -151,6 +152,7 @@ Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages) {
   });
   Buffer<float> nearest(gbuffer.center.size());
   keep_nearest(gbuffer, 0, nearest);
+  if (way && inputs.before) *way = ways_back(inputs, gbuffer.center, nearest);
   return nearest;
 }
 

@@ -136,12 +136,15 @@ Image linked(const FrameInputs& inputs, Stages& stages, Buffer<float>* nearest =
 template <class Frame>
 Image temporal(const FrameInputs& inputs, MethodState& state, Stages& stages, const Frame& make_frame) {
   const int frames = state.history ? 1 : inputs.scene.settings.frames;
+  const bool moved = state.history && inputs.before;  // since the history; the frames of a first picture are all of one pose
   if (!state.history) state.history = std::make_unique<TaaHistory>();
   for (int i = 0; i < frames; ++i) {
     stages.set_pass(i, frames);
     const Vec2 position = jitter_position(state.next_frame++);
     TaaFrame frame{{}, {}, inputs.view, position};
-    frame.color = make_frame(jittered(inputs, position), frame.depth);
+    const FrameInputs sampled = jittered(inputs, position);
+    frame.color = make_frame(sampled, frame.depth);
+    if (moved) render_nearest(sampled, stages, &frame.way);
     run_on(frame.color, "filter.taa", stages, [&] { state.history->add(std::move(frame)); });
   }
   stages.set_pass(0, 1);

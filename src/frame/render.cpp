@@ -82,13 +82,27 @@ bool draws_hair_meshes(const RenderSettings& settings) {
   return settings.method == Method::kSwr && settings.view == View::kBeauty;
 }
 
+/// Throws Error unless `moved` may be `scene` in another pose.
+void check_same_things(const Scene& scene, const Scene& moved) {
+  bool same = scene.grooms.size() == moved.grooms.size() && scene.meshes.size() == moved.meshes.size();
+  for (std::size_t g = 0; same && g < scene.grooms.size(); ++g) {
+    const GroomInstance &a = scene.grooms[g], &b = moved.grooms[g];
+    same = (!a.lod) == (!b.lod) && (!b.strands || !a.strands || a.strands->offsets == b.strands->offsets);
+    if (same && a.lod) same = a.lod->level_offsets == b.lod->level_offsets;
+  }
+  if (!same)
+    throw Error("scene", "grooms", "they are others than those that the sequence began with",
+                "give the same scene at another frame: at_frame()");
+}
+
 /// Where things were from the scene's previous camera.
 DebugView render_motion_view(const FrameInputs& inputs, Stages& stages) {
   const RenderSettings& settings = inputs.scene.settings;
-  const Buffer<float> depth = render_nearest(inputs, stages);
+  Buffer<Vec3> way;
+  const Buffer<float> depth = render_nearest(inputs, stages, &way);
   DebugView view;
   stages.run("filter.motion", "pixels", [&](const Progress&) {
-    const Buffer<Vec2> motion = motion_vectors(inputs.view, inputs.previous.value_or(inputs.view), depth);
+    const Buffer<Vec2> motion = motion_vectors(inputs.view, inputs.previous.value_or(inputs.view), depth, way);
     view.data = motion_data(motion, depth, settings.width, settings.height);
     view.display = motion_display(motion, depth, settings.width, settings.height);
     return StageWork{motion.size(), motion.bytes()};
@@ -122,7 +136,9 @@ struct PictureSequence::State {
   DeferredGrooms grooms;             // of method swr, prepared once
   std::vector<MethodState> methods;  // one an eye
   std::optional<ThickHairs> thick;
-  Scene drawn;  // where thick hairs are active: this frame's grooms
+  Scene drawn;                        // where thick hairs are active: this frame's grooms
+  std::optional<Scene> before;        // where things have moved: as they were a frame ago
+  std::optional<Scene> drawn_before;  // that as `drawn`, where thick hairs are active
 
   explicit State(Scene s) : scene(std::move(s)), meshes(scene.meshes) {
     // Strands of hair meshes are only made where something looks at strands.
@@ -131,16 +147,37 @@ struct PictureSequence::State {
     thick.emplace(scene);
   }
 
+  /// The scene in another pose, which was checked.
+  void move(Scene moved) {
+    for (std::size_t g = 0; g < moved.grooms.size(); ++g)
+      if (!moved.grooms[g].strands) moved.grooms[g].strands = scene.grooms[g].strands;
+    moved.settings = scene.settings, moved.previous_camera = scene.previous_camera;
+    before = std::exchange(scene, std::move(moved));
+    if (!scene.meshes.empty()) meshes = MeshTracer(scene.meshes);
+    rig.reset();
+    thick->move(scene);
+  }
+
   /// The scene as its levels of detail show it to the eye that `view` is of; both eyes see the same.
   const Scene& draw(const CameraView& view, Stages& stages) {
     if (!thick->active() || draws_hair_meshes(scene.settings)) return scene;
     stages.run("lod", "segments", [&](const Progress&) {
       drawn = thick->drawn(scene, view);
       if (thick->changed()) rig.reset();  // what casts shadows is what is seen
+      if (before) drawn_before = thick->drawn_alike(scene, *before, view);
       return StageWork{thick->segments(), 0};
     });
     return drawn;
   }
+
+  /// As draw(), a frame ago; null where nothing has moved. After draw().
+  const Scene* seen_before() const {
+    if (!before || draws_hair_meshes(scene.settings)) return nullptr;
+    if (!thick->active()) return &*before;
+    return drawn_before ? &*drawn_before : nullptr;
+  }
+
+  RenderResult picture(const Camera& camera, const Progress& progress);
 
   /// Of the scene as it is drawn. Made at the first call, and where levels of detail have changed.
   const LightRig& lights(const Scene& seen, Stages& stages) {
@@ -164,28 +201,27 @@ PictureSequence::~PictureSequence() = default;
 PictureSequence::PictureSequence(PictureSequence&&) noexcept = default;
 PictureSequence& PictureSequence::operator=(PictureSequence&&) noexcept = default;
 
-RenderResult PictureSequence::next(const Camera& camera, const Progress& progress) {
-  Scene& scene = state_->scene;
+RenderResult PictureSequence::State::picture(const Camera& camera, const Progress& progress) {
   const RenderSettings& settings = scene.settings;
-  const std::vector<Camera> now = eyes(camera), before = eyes(scene.previous_camera.value_or(camera));
+  const std::vector<Camera> now = eyes(camera), earlier = eyes(scene.previous_camera.value_or(camera));
   scene.camera = camera;
   Stages stages(progress);
   stages.note("groom", draws_hair_meshes(settings) ? "vertices" : "points", groom_work(scene));
   const bool beauty = settings.view == View::kBeauty;
-  const Scene& drawn = state_->draw(make_camera_view(now[0], settings.width, settings.height), stages);
-  const LightRig dark, &rig = beauty ? state_->lights(drawn, stages) : dark;
+  const Scene& seen = draw(make_camera_view(now[0], settings.width, settings.height), stages);
+  const LightRig dark, &lit = beauty ? lights(seen, stages) : dark;
   std::vector<FrameInputs> views;
   for (std::size_t e = 0; e < now.size(); ++e) {
     const CameraView view = make_camera_view(now[e], settings.width, settings.height);
-    views.push_back(
-        {drawn, state_->meshes, rig, view, draws_hair_meshes(settings) ? SegmentNumbering() : number_segments(drawn, view)});
-    if (before.size() == now.size()) views[e].previous = make_camera_view(before[e], settings.width, settings.height);
+    views.push_back({seen, meshes, lit, view, draws_hair_meshes(settings) ? SegmentNumbering() : number_segments(seen, view)});
+    if (earlier.size() == now.size()) views[e].previous = make_camera_view(earlier[e], settings.width, settings.height);
+    views[e].before = seen_before();
   }
-  state_->methods.resize(now.size());
+  methods.resize(now.size());
 
   std::vector<Image> linear, display;
   if (beauty)
-    for (Beauty& picture : render_beauty(views, state_->methods, state_->grooms, stages))
+    for (Beauty& picture : render_beauty(views, methods, grooms, stages))
       linear.push_back(std::move(picture.linear)), display.push_back(std::move(picture.display));
   else
     for (const FrameInputs& view : views) {
@@ -194,6 +230,18 @@ RenderResult PictureSequence::next(const Camera& camera, const Progress& progres
     }
   scene.previous_camera = camera;
   return {side_by_side(std::move(linear)), side_by_side(std::move(display)), stages.take()};
+}
+
+RenderResult PictureSequence::next(const Camera& camera, const Progress& progress) {
+  state_->before.reset();
+  return state_->picture(camera, progress);
+}
+
+RenderResult PictureSequence::next(Scene moved, const Progress& progress) {
+  check_same_things(state_->scene, moved);
+  const Camera camera = moved.camera;
+  state_->move(std::move(moved));
+  return state_->picture(camera, progress);
 }
 
 RenderResult render(const Scene& scene, const Progress& progress) {

@@ -21,15 +21,15 @@ struct Seen {
   bool visible = false;
 };
 
-/// Where `to` sees the point that `from` sees at `at` in depth z, metres. z = +inf is infinitely far: only the direction
+/// Where `to` sees the point that `from` sees at `at` in depth z, metres, and that has moved by `way`, metres in the world. z = +inf is infinitely far: only the direction
 /// counts, and an orthographic camera sees it in the same place wherever it stands.
-inline Seen reproject(const CameraView& from, const CameraView& to, Vec2 at, float z) {
+inline Seen reproject(const CameraView& from, const CameraView& to, Vec2 at, float z, Vec3 way = {}) {
   if (std::isinf(z)) {
     if (!from.perspective || !to.perspective) return {at, z, true};
     const Vec3 c = transform_vector(to.world_to_camera, transform_vector(from.camera_to_world, unproject(from, at, 1)));
     return c.z > 0 ? Seen{project(to, c), z, true} : Seen{};
   }
-  const Vec3 c = transform_point(to.world_to_camera, transform_point(from.camera_to_world, unproject(from, at, z)));
+  const Vec3 c = transform_point(to.world_to_camera, transform_point(from.camera_to_world, unproject(from, at, z)) + way);
   return c.z >= to.near_plane ? Seen{project(to, c), c.z, true} : Seen{};
 }
 

@@ -3,7 +3,9 @@
 #include <pelage/error.h>
 #include <pelage/io.h>
 
+#include "io/animation_sections.h"
 #include "io/told.h"
+#include "io/xxh64.h"
 
 namespace pelage {
 namespace io {
@@ -85,6 +87,7 @@ LodHierarchy read_lod(const ByteSource& source, const Progress& progress) {
                    file.read(name, components, array, {entries});
                    if (!optional && array.size() != entries) file.bad(fmt::format("section {}", name), "missing");
                  });
+  lod.animation = read_animation(file, lod.guide_count(), xxh64(lod.guides.data(), lod.guides.size() * sizeof(Vec3)));
   validate(lod, source.name());
   return lod;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/animation_sections.h"
 #include "io/lod_sections.h"
 #include "io/pelage_container.h"
 #include "io/strand_formats.h"
@@ -76,7 +77,8 @@ FileStrands read(const ByteSource& source, const Progress& progress) {
     file.read_checked(*comment, set.comment.data());
   }
   for (const std::string& section : file.left())
-    if (!is_lod_section(section)) out.notes.push_back(fmt::format("section '{}' of a newer Pelage was ignored", section));
+    if (!is_lod_section(section) && !is_animation_section(section))
+      out.notes.push_back(fmt::format("section '{}' of a newer Pelage was ignored", section));
   out.scale = 1;
   out.up_stated = true;
   return out;
@@ -104,6 +106,9 @@ void write_pelage(AtomicFile& file, const StrandSet& set, const LodHierarchy* lo
   writer.add("comment", 1, set.comment.data(), set.comment.size(), 1);
   const LodHead head = lod ? lod_head(*lod, writer.checksum("points")) : LodHead();
   if (lod) add_lod_sections(*lod, head, writer);
+  const GuideAnimation* animation = lod ? lod->animation.get() : nullptr;
+  const AnimationHead moved = animation ? animation_head(*animation, writer.checksum("lodguidp")) : AnimationHead();
+  if (animation) add_animation_sections(*animation, moved, writer);
   writer.write(file, progress);
 }
 

@@ -52,7 +52,7 @@ class ThickHairPen {
 
 /// One prism: strands where its segments show them, `clusters` elsewhere.
 void draw_prism(const StrandSet& set, const LodHierarchy& lod, const std::uint8_t* levels, std::size_t prism,
-                const DrawClusters& clusters, Pieces& out) {
+                const DrawClusters& clusters, const StrandSet* measured, Pieces& out) {
   const ThickHair& all = lod.hairs[prism];
   const auto* strands = &lod.order[all.first_strand];
   for (std::size_t first = 0, last; first < kLodSegments; first = last) {
@@ -61,18 +61,19 @@ void draw_prism(const StrandSet& set, const LodHierarchy& lod, const std::uint8_
     else if (first == 0 && last == kLodSegments) out.whole.insert(out.whole.end(), strands, strands + all.fibers);
     else
       for (std::uint32_t i = 0; i < all.fibers; ++i)
-        append_strand(set, strands[i], share_at(first), share_at(last), 1, out.strands);
+        append_strand(set, strands[i], share_at(first), share_at(last), 1, out.strands, measured);
   }
 }
 
-Pieces make_pieces(const StrandSet& set, const LodHierarchy& lod, const LodLevels& levels, const DrawClusters& clusters) {
+Pieces make_pieces(const StrandSet& set, const LodHierarchy& lod, const LodLevels& levels, const DrawClusters& clusters,
+                   const StrandSet* measured) {
   const std::size_t prisms = levels.size() / kLodSegments;
   std::vector<Pieces> parts((prisms + kPrismsPerTask - 1) / kPrismsPerTask);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       parts[i].strands.offsets = parts[i].hairs.offsets = {0};
       for (std::size_t p = i * kPrismsPerTask; p < std::min(prisms, (i + 1) * kPrismsPerTask); ++p)
-        draw_prism(set, lod, &levels[p * kLodSegments], p, clusters, parts[i]);
+        draw_prism(set, lod, &levels[p * kLodSegments], p, clusters, measured, parts[i]);
     }
   });
   Pieces all;
@@ -110,15 +111,15 @@ Vec3 ToEye::operator()(Vec3 p) const {
 }
 
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodPlace& place, const LevelBounds& bounds,
-                                       const LodLevels& levels) {
-  return draw_levels(groom, place.lod, levels, CurveBasis::kCatmullRom, ThickHairPen(*groom.strands, place, bounds));
+                                       const LodLevels& levels, const StrandSet* measured) {
+  return draw_levels(groom, place.lod, levels, CurveBasis::kCatmullRom, ThickHairPen(*groom.strands, place, bounds), measured);
 }
 
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodHierarchy& lod, const LodLevels& levels,
-                                       CurveBasis basis, const DrawClusters& clusters) {
+                                       CurveBasis basis, const DrawClusters& clusters, const StrandSet* measured) {
   const std::size_t strands = groom.strands->strand_count();
   if (std::all_of(levels.begin(), levels.end(), [&](std::uint8_t l) { return l == lod.levels(); })) return {groom};
-  Pieces pieces = make_pieces(*groom.strands, lod, levels, clusters);
+  Pieces pieces = make_pieces(*groom.strands, lod, levels, clusters, measured);
   pieces.strands.basis = groom.strands->basis, pieces.hairs.basis = basis;
   std::vector<GroomInstance> drawn;
   if (!pieces.whole.empty()) {

@@ -28,13 +28,14 @@ float direction_variance(float length_ratio);
 /// sees, with GroomInstance::sections. What is empty is left out; a groom of which all strands are drawn is returned as it is.
 ///
 /// Thick hairs are Catmull-Rom curves through the knots of their B-splines, so pieces of one hair meet exactly. Pieces of strands reach from the
-/// control point before their place to the one after. The same for any number of threads. O(what is drawn).
+/// control point before their place to the one after, by the lengths of `measured`, the strands in another pose, where it is given: so two
+/// poses are cut alike. The same for any number of threads. O(what is drawn).
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodPlace& place, const LevelBounds& bounds,
-                                       const LodLevels& levels);
+                                       const LodLevels& levels, const StrandSet* measured = nullptr);
 
 /// The same with something else than thick hairs where levels are not strands: what `clusters` draws, curves of `basis`.
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodHierarchy& lod, const LodLevels& levels,
-                                       CurveBasis basis, const DrawClusters& clusters);
+                                       CurveBasis basis, const DrawClusters& clusters, const StrandSet* measured = nullptr);
 
 /// Directions from places of a groom to the eye, in the groom's space; of any length.
 class ToEye {

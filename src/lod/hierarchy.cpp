@@ -1,4 +1,5 @@
 // What holds for every hierarchy, and what it amounts to.
+#include <pelage/animation.h>
 #include <pelage/error.h>
 #include <pelage/lod.h>
 
@@ -139,7 +140,10 @@ std::size_t bytes_of(const std::vector<T>& array) {
 
 }  // namespace
 
-void validate(const LodHierarchy& lod, const std::string& where) { Rules(lod, where).check(); }
+void validate(const LodHierarchy& lod, const std::string& where) {
+  Rules(lod, where).check();
+  if (lod.animation) validate(*lod.animation, lod.guide_count(), where);
+}
 
 void validate(const LodHierarchy& lod, const StrandSet& strands, const std::string& where) {
   validate(lod, where);

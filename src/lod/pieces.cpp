@@ -47,12 +47,14 @@ void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& 
   to.strand_id.push_back(from.strand_id.empty() ? one : from.strand_id[one]);
 }
 
-void append_strand(const StrandSet& set, std::size_t strand, float from, float to, float widen, StrandSet& pieces) {
+void append_strand(const StrandSet& set, std::size_t strand, float from, float to, float widen, StrandSet& pieces,
+                   const StrandSet* measured) {
+  const std::vector<Vec3>& polygon = (measured ? *measured : set).points;
   const std::size_t begin = set.offsets[strand], end = set.offsets[strand + 1], count = end - begin;
   const std::size_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
   std::vector<float> length(count);
   for (std::size_t i = 1; i < count; ++i)
-    length[i] = length[i - 1] + pelage::length(set.points[begin + i] - set.points[begin + i - 1]);
+    length[i] = length[i - 1] + pelage::length(polygon[begin + i] - polygon[begin + i - 1]);
   std::size_t first = 0, last = count - 1;
   while (first + stride < last && length[first + stride] <= from * length.back()) first += stride;
   while (last >= first + 2 * stride && length[last - stride] >= to * length.back()) last -= stride;

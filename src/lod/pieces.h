@@ -42,8 +42,9 @@ void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& 
 void end_strand(StrandSet& set);
 
 /// The part of a strand at shares `from` to `to` of the length of its control polygon, and what it takes to whole spans, `widen` times as
-/// wide as it is.
-void append_strand(const StrandSet& set, std::size_t strand, float from, float to, float widen, StrandSet& pieces);
+/// wide as it is. The lengths are those in `measured`, the strands in another pose, where it is given: so two poses are cut alike.
+void append_strand(const StrandSet& set, std::size_t strand, float from, float to, float widen, StrandSet& pieces,
+                   const StrandSet* measured = nullptr);
 
 /// `from` after what stands in `to`.
 void append(const Pieces& from, Pieces& to);

@@ -69,6 +69,34 @@ std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const
   return draw_levels(instance, place, groom.bounds, groom.levels);
 }
 
+void ThickHairs::move(const Scene& scene) {
+  for (Groom& groom : grooms_) {
+    const GroomInstance& instance = scene.grooms[groom.number];
+    groom.bounds = LevelBounds(*instance.lod);
+    if (groom.thickened) groom.thickened.emplace(*instance.lod);
+    if (groom.cards) groom.cards.emplace(*instance.strands, *instance.lod);
+  }
+}
+
+std::optional<Scene> ThickHairs::drawn_alike(const Scene& now, const Scene& scene, const CameraView& view) const {
+  Scene drawn = scene;
+  drawn.grooms.clear();
+  auto next = grooms_.begin();
+  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
+    const GroomInstance& groom = scene.grooms[g];
+    if (next == grooms_.end() || next->number != g) {
+      drawn.grooms.push_back(groom);
+      continue;
+    }
+    if (next->cards || next->thickened) return std::nullopt;
+    const LodPlace place{*groom.lod, view, compose(view.world_to_camera, groom.transform)};
+    std::vector<GroomInstance> pieces = draw_levels(groom, place, next->bounds, next->levels, now.grooms[g].strands.get());
+    std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
+    ++next;
+  }
+  return drawn;
+}
+
 Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
   PELAGE_CHECK(active());
   Scene drawn = scene;

@@ -28,6 +28,12 @@ class ThickHairs {
   /// scene must be the one that this was made for.
   Scene drawn(const Scene& scene, const CameraView& view);
 
+  /// `scene` in another pose of its grooms, to choose levels for from now on.
+  void move(const Scene& scene);
+  /// `scene`, another pose of `now`, of which drawn() was called last, as the same strands and pieces of thick hairs. None where something else than
+  /// thick hairs stands for clusters.
+  std::optional<Scene> drawn_alike(const Scene& now, const Scene& scene, const CameraView& view) const;
+
   /// Whether the last call chose other levels than the one before, or another size for the maps of lights.
   bool changed() const { return changed_; }
   std::uint64_t segments() const { return segments_; }  ///< of the last call: spans of what is drawn

@@ -72,12 +72,14 @@ inline void seal(std::span<std::byte> bytes, bool belongs = true) {
   store(40, bytes.size());
   const std::size_t sections = std::min<std::size_t>(load(12) & 0xFF, (bytes.size() - kHeader) / kSection);
   const auto named = [&](std::size_t at, std::string_view name) { return std::memcmp(bytes.data() + at, name.data(), 8) == 0; };
-  std::uint64_t strands = 0;  // checksum of the points, which the levels of detail repeat
+  std::uint64_t strands = 0, guides = 0;  // checksums of the points and guides, which levels of detail and animation repeat
   for (std::size_t at = kHeader; at < kHeader + sections * kSection; at += kSection) {
     const std::uint64_t offset = load(at + 16), size = load(at + 24);
     if (offset > bytes.size() || size > bytes.size() - offset) continue;
     if (belongs && named(at, {"lodhead\0", 8}) && size == 32) store(offset + 24, strands);
+    if (belongs && named(at, {"animhead", 8}) && size == 32) store(offset + 24, guides);
     store(at + 32, io::xxh64(bytes.data() + offset, size));
+    if (named(at, {"lodguidp", 8})) guides = load(at + 32);
     if (named(at, {"points\0\0", 8})) strands = load(at + 32);
   }
   io::Xxh64 hash;
