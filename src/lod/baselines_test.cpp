@@ -11,6 +11,7 @@
 #include <set>
 
 #include "frame/camera_view.h"
+#include "kit/grown_chain.h"
 #include "lod/draw_levels.h"
 #include "lod/hair_cards.h"
 #include "lod/thickened_strands.h"
@@ -20,21 +21,8 @@ namespace {
 
 constexpr std::size_t kPoints = LodHierarchy::kPoints;
 
-GroomInstance groom_with_chain(HairStyle style, int strands) {
-  GrowSettings s = grow_defaults(style);
-  s.strands = strands, s.points = 24;
-  GroomInstance groom;
-  auto set = std::make_shared<const StrandSet>(grow(s, mannequin_head()));
-  groom.lod = std::make_shared<const LodHierarchy>(build_lod(*set, {.levels = 4, .guides = 24, .memory_share = 5}));
-  groom.strands = set;
-  return groom;
-}
-
-CameraView view_from(Vec3 eye) {
-  Camera camera;
-  camera.eye = eye;
-  return make_camera_view(camera, 320, 240);
-}
+GroomInstance groom_with_chain(HairStyle style, int strands) { return kit::groom_with_chain(style, strands, 4); }
+using kit::view_from;
 
 class Baselines : public testing::Test {
  protected:

@@ -13,6 +13,7 @@
 
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "kit/grown_chain.h"
 #include "light/strand_lines.h"
 #include "lod/thick_hairs.h"
 
@@ -21,21 +22,8 @@ namespace {
 
 constexpr std::size_t kPoints = LodHierarchy::kPoints;
 
-GroomInstance groom_with_chain(int strands = 1500) {
-  GrowSettings s = grow_defaults(HairStyle::kWavy);
-  s.strands = strands, s.points = 24;
-  GroomInstance groom;
-  auto set = std::make_shared<const StrandSet>(grow(s, mannequin_head()));
-  groom.lod = std::make_shared<const LodHierarchy>(build_lod(*set, {.levels = 3, .guides = 24, .memory_share = 5}));
-  groom.strands = set;
-  return groom;
-}
-
-CameraView view_from(Vec3 eye) {
-  Camera camera;
-  camera.eye = eye;
-  return make_camera_view(camera, 320, 240);
-}
+GroomInstance groom_with_chain(int strands = 1500) { return kit::groom_with_chain(HairStyle::kWavy, strands, 3); }
+using kit::view_from;
 
 class DrawLevels : public testing::Test {
  protected:

@@ -42,6 +42,25 @@ int map_size(float pixels, int most) {
   return std::min(size, most);
 }
 
+/// `scene` with what `draw(groom, place)` makes of grooms that have levels, in the order of the scene; others stay as they are.
+template <class Grooms, class Draw>
+Scene draw_grooms(const Scene& scene, Grooms& with_levels, const CameraView& view, const Draw& draw) {
+  Scene drawn = scene;
+  drawn.grooms.clear();
+  auto next = with_levels.begin();
+  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
+    const GroomInstance& groom = scene.grooms[g];
+    if (next == with_levels.end() || next->number != g) {
+      drawn.grooms.push_back(groom);
+      continue;
+    }
+    std::vector<GroomInstance> pieces =
+        draw(*next++, LodPlace{*groom.lod, view, compose(view.world_to_camera, groom.transform)});
+    std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
+  }
+  return drawn;
+}
+
 }  // namespace
 
 ThickHairs::ThickHairs(const Scene& scene) {
@@ -79,44 +98,24 @@ void ThickHairs::move(const Scene& scene) {
 }
 
 std::optional<Scene> ThickHairs::drawn_alike(const Scene& now, const Scene& scene, const CameraView& view) const {
-  Scene drawn = scene;
-  drawn.grooms.clear();
-  auto next = grooms_.begin();
-  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
-    const GroomInstance& groom = scene.grooms[g];
-    if (next == grooms_.end() || next->number != g) {
-      drawn.grooms.push_back(groom);
-      continue;
-    }
-    if (next->cards || next->thickened) return std::nullopt;
-    const LodPlace place{*groom.lod, view, compose(view.world_to_camera, groom.transform)};
-    std::vector<GroomInstance> pieces = draw_levels(groom, place, next->bounds, next->levels, now.grooms[g].strands.get());
-    std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
-    ++next;
-  }
-  return drawn;
+  if (std::any_of(grooms_.begin(), grooms_.end(), [](const Groom& g) { return g.cards || g.thickened; })) return std::nullopt;
+  return draw_grooms(scene, grooms_, view, [&](const Groom& groom, const LodPlace& place) {
+    const GroomInstance& instance = scene.grooms[groom.number];
+    return draw_levels(instance, place, groom.bounds, groom.levels, now.grooms[groom.number].strands.get());
+  });
 }
 
 Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
   PELAGE_CHECK(active());
-  Scene drawn = scene;
-  drawn.grooms.clear(), changed_ = false, segments_ = 0;
+  changed_ = false, segments_ = 0;
   float pixels = grooms_.size() == scene.grooms.size() ? 0 : INFINITY;  // grooms without levels of detail take maps as they are
-  auto next = grooms_.begin();
-  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
-    const GroomInstance& groom = scene.grooms[g];
-    if (next == grooms_.end() || next->number != g) {
-      drawn.grooms.push_back(groom);
-      continue;
-    }
-    const LodPlace place{*groom.lod, view, compose(view.world_to_camera, groom.transform)};
-    pixels = std::max(pixels, pixels_wide(next->bounds.box(), view, place.to_camera));
-    const LodLevels before = next->levels;
-    std::vector<GroomInstance> pieces = draw(groom, scene.settings.thick_hairs, place, *next);
-    changed_ = changed_ || before != next->levels;
-    std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
-    ++next;
-  }
+  Scene drawn = draw_grooms(scene, grooms_, view, [&](Groom& groom, const LodPlace& place) {
+    pixels = std::max(pixels, pixels_wide(groom.bounds.box(), view, place.to_camera));
+    const LodLevels before = groom.levels;
+    std::vector<GroomInstance> pieces = draw(scene.grooms[groom.number], scene.settings.thick_hairs, place, groom);
+    changed_ = changed_ || before != groom.levels;
+    return pieces;
+  });
   drawn.settings.opacity_map_size = map_size(pixels, scene.settings.opacity_map_size);
   changed_ = changed_ || map_size_ != drawn.settings.opacity_map_size;
   map_size_ = drawn.settings.opacity_map_size;
