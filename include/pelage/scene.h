@@ -106,14 +106,20 @@ struct ThickSections {
   std::vector<std::uint8_t> levels;  ///< [strands] of the chain that each shows, 0 the coarsest
 };
 
+/// Spans first_span … first_span + spans − 1 of a strand.
+struct StrandPart {
+  std::uint32_t strand = 0, first_span = 0, spans = 0;
+  bool operator==(const StrandPart&) const = default;
+};
+
 /// A groom: strands, or a hair mesh that they are made from.
 struct GroomInstance {
   std::string name;
   std::shared_ptr<const StrandSet> strands;   ///< null where expand_hair_meshes() has not been there yet
   std::shared_ptr<const HairMesh> hair_mesh;  ///< or null. Method::kSwr draws it as it is, everything else its strands
   std::shared_ptr<const LodHierarchy> lod;  ///< or null: thick hairs of `strands`, drawn where clusters are small on the screen
-  /// Of `strands`, the numbers of those that are drawn, ascending; null: all. RenderSettings::thick_hairs sets it where there is `lod`.
-  std::shared_ptr<const std::vector<std::uint32_t>> only;
+  /// Of `strands`, what is drawn, ascending and none twice; null: all. RenderSettings::thick_hairs sets it where there is `lod`.
+  std::shared_ptr<const std::vector<StrandPart>> only;
   /// Of pieces of thick hairs: their cross-sections; the widths of `strands` are then what fibers cover, seen from the eye. Else null.
   std::shared_ptr<const ThickSections> sections;
   float lod_lambda = 1.4f;  ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
@@ -127,11 +133,6 @@ struct GroomInstance {
   Affine transform;       ///< object to world; similarity (rotation, translation, one scale)
   float width_scale = 1;  ///< multiplies every width
 };
-
-/// How many of a groom's strands are drawn.
-inline std::size_t drawn_strands(const GroomInstance& groom) {
-  return groom.only ? groom.only->size() : groom.strands->strand_count();
-}
 
 struct MeshInstance {
   std::string name;

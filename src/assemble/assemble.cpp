@@ -5,7 +5,6 @@
 #include "assemble/assemble_wide.h"
 #include "assemble/clip.h"
 #include "core/check.h"
-#include "frame/segment_lookup.h"
 
 namespace pelage {
 namespace {
@@ -24,12 +23,8 @@ void reserve(ScreenBlock& block, std::size_t points) {
 }  // namespace
 
 std::size_t assemble_strands(const AssembleJob& job, std::size_t first, std::size_t last, ScreenBlock& block) {
-  const StrandSet& set = *job.strands;
-  PELAGE_CHECK(first < last && last <= (job.order.empty() ? set.strand_count() : job.order.size()));
-  const auto points = [&](std::size_t i) {
-    const std::size_t s = strand_at(job, i);
-    return std::size_t{span_count(set.basis, set.offsets[s + 1] - set.offsets[s])} * job.subdivisions + 1;
-  };
+  PELAGE_CHECK(first < last && last <= (job.parts.empty() ? job.strands->strand_count() : job.parts.size()));
+  const auto points = [&](std::size_t i) { return std::size_t{part_at(job, i).spans} * job.subdivisions + 1; };
   std::size_t end = first, total = 0;
   do total += points(end++);
   while (end < last && total + points(end) <= kBlockPoints);

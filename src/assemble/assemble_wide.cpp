@@ -100,21 +100,29 @@ void transform_points(const AssembleJob& job, std::size_t begin, std::size_t end
   }
 }
 
-/// Every span of one strand cut into parts: points q = 0 … spans·parts from `at` on.
-void refine_strand(const AssembleJob& job, std::size_t strand, std::size_t at, ScreenBlock& block) {
-  const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
+/// Camera space of the control points that the spans of a part blend: its own, and a neighbor or a phantom at either end.
+void part_controls(const AssembleJob& job, const StrandPart& part, Controls& c) {
   const StrandSet& set = *job.strands;
-  const std::uint32_t begin = set.offsets[strand], end = set.offsets[strand + 1], count = end - begin;
-  const std::size_t spans = span_count(set.basis, count), parts = job.subdivisions;
-  const std::size_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
-  Controls& c = thread_controls();
+  const std::uint32_t begin = first_point(set, part), end = begin + part.spans * points_per_span(set.basis) + 1;
+  const bool from_root = begin == set.offsets[part.strand], to_tip = end == set.offsets[part.strand + 1];
+  const std::size_t count = end - begin, before = from_root ? 0 : 1;
   c.reserve(count);
-  transform_points(job, begin, end, &c.x[1], &c.y[1], &c.z[1], &c.half_width[1]);
+  transform_points(job, begin - before, end + (to_tip ? 0 : 1), &c.x[1 - before], &c.y[1 - before], &c.z[1 - before],
+                   &c.half_width[1 - before]);
   for (Buffer<float>* b : {&c.x, &c.y, &c.z}) {
     float* p = b->data();
-    p[0] = p[1] * 2.f - p[2];
-    p[count + 1] = p[count] * 2.f - p[count - 1];
+    if (from_root) p[0] = p[1] * 2.f - p[2];
+    if (to_tip) p[count + 1] = p[count] * 2.f - p[count - 1];
   }
+}
+
+/// Every span of a part cut into pieces: points q = 0 … spans·pieces from `at` on.
+void refine_part(const AssembleJob& job, const StrandPart& part, std::size_t at, ScreenBlock& block) {
+  const std::size_t lanes = static_cast<std::size_t>(wide::lanes());
+  const StrandSet& set = *job.strands;
+  const std::size_t spans = part.spans, pieces = job.subdivisions, stride = points_per_span(set.basis);
+  Controls& c = thread_controls();
+  part_controls(job, part, c);
   // Blended control points of span s: s … s + 3 (with the phantoms) or, for Bézier, 3s + 1 … 3s + 4.
   const std::size_t blended = stride == 3 ? 1 : 0;
   const hn::Vec<wide::IntTag> lane = hn::Iota(wide::IntTag(), 0);
@@ -123,7 +131,7 @@ void refine_strand(const AssembleJob& job, std::size_t strand, std::size_t at, S
   };
   HWY_ALIGN float out[4][hn::MaxLanes(wide::FloatTag())];
   float* const targets[4] = {&block.x[at], &block.y[at], &block.depth[at], &block.radius[at]};
-  const auto blend_part = [&](std::size_t s, std::size_t k, float t) {
+  const auto blend_piece = [&](std::size_t s, std::size_t k, float t) {
     const Vec4 weights = basis_weights(set.basis, t);
     const wide::Vec4 w(weights.x, weights.y, weights.z, weights.w);
     const std::size_t first = s * stride + blended;
@@ -135,11 +143,11 @@ void refine_strand(const AssembleJob& job, std::size_t strand, std::size_t at, S
     const Float wb = load_strided(&c.half_width[s * stride + 1 + stride]);
     store(p.x, out[0]), store(p.y, out[1]), store(p.z, out[2]), store(wa + (wb - wa) * Float(t), out[3]);
     for (std::size_t l = 0; l < std::min(lanes, spans - s); ++l)
-      for (int channel = 0; channel < 4; ++channel) targets[channel][(s + l) * parts + k] = out[channel][l];
+      for (int channel = 0; channel < 4; ++channel) targets[channel][(s + l) * pieces + k] = out[channel][l];
   };
   for (std::size_t s = 0; s < spans; s += lanes)
-    for (std::size_t k = 0; k < parts; ++k) blend_part(s, k, static_cast<float>(k) / static_cast<float>(parts));
-  blend_part(spans - 1, parts, 1.f);
+    for (std::size_t k = 0; k < pieces; ++k) blend_piece(s, k, static_cast<float>(k) / static_cast<float>(pieces));
+  blend_piece(spans - 1, pieces, 1.f);
 }
 
 /// Writes consecutive ids from `id` on to points at … at + count − 2 and kNoSegment to the last.
@@ -150,40 +158,46 @@ void number_points(std::uint32_t id, std::size_t at, std::size_t count, ScreenBl
   ids[count - 1] = ScreenBlock::kNoSegment;
 }
 
-/// Appends the points of strands from number `first` of the order on, as long as they follow each other in memory. Returns the
+/// Appends the points of parts from number `first` of the job on, as long as they follow each other in memory. Returns the
 /// number after the last.
 std::size_t copy_run(const AssembleJob& job, std::size_t first, std::size_t end, ScreenBlock& block) {
   const StrandSet& set = *job.strands;
-  const std::uint32_t strand = strand_at(job, first);
-  std::uint32_t last = strand + 1;
-  while (first + (last - strand) < end && strand_at(job, first + (last - strand)) == last) ++last;
-  const std::uint32_t from = set.offsets[strand], to = set.offsets[last];
-  const std::size_t at = block.count, next = first + (last - strand);
-  if (from == to) return next;
+  const std::uint32_t from = first_point(set, part_at(job, first));
+  std::uint32_t to = from;
+  std::size_t next = first;
+  for (; next < end; ++next) {
+    const StrandPart part = part_at(job, next);
+    if (part.spans == 0 || first_point(set, part) != to) break;
+    to += part.spans + 1;
+  }
+  const std::size_t at = block.count;
   transform_points(job, from, to, &block.x[at], &block.y[at], &block.depth[at], &block.radius[at]);
   number_points(job.base_id + from, at, to - from, block);
-  for (std::uint32_t s = strand; s < last; ++s)
-    if (set.offsets[s + 1] > from) block.id[at + set.offsets[s + 1] - from - 1] = ScreenBlock::kNoSegment;
+  std::size_t last = at;  // point of the part
+  for (std::size_t i = first; i < next; ++i) {
+    last += part_at(job, i).spans;
+    block.id[last++] = ScreenBlock::kNoSegment;
+  }
   block.count += to - from;
   return next;
 }
 
 void CameraPoints(const AssembleJob& job, std::size_t first, std::size_t end, ScreenBlock& block) {
   const StrandSet& set = *job.strands;
-  const std::uint32_t parts = job.subdivisions;
+  const std::uint32_t pieces = job.subdivisions;
   const bool through_points = set.basis == CurveBasis::kLinear || set.basis == CurveBasis::kCatmullRom;
   block.count = 0;
-  if (parts == 1 && through_points) {
-    for (std::size_t i = first; i < end;) i = copy_run(job, i, end, block);
+  const auto empty = [&](std::size_t i) { return part_at(job, i).spans == 0; };
+  if (pieces == 1 && through_points) {
+    for (std::size_t i = first; i < end;) i = empty(i) ? i + 1 : copy_run(job, i, end, block);
     return;
   }
   for (std::size_t i = first; i < end; ++i) {
-    const std::uint32_t s = strand_at(job, i);
-    const std::uint32_t begin = set.offsets[s], spans = span_count(set.basis, set.offsets[s + 1] - begin);
-    if (spans == 0) continue;
-    const std::size_t points = std::size_t{spans} * parts + 1;
-    refine_strand(job, s, block.count, block);
-    number_points(job.base_id + begin * parts, block.count, points, block);
+    if (empty(i)) continue;
+    const StrandPart part = part_at(job, i);
+    const std::size_t points = std::size_t{part.spans} * pieces + 1;
+    refine_part(job, part, block.count, block);
+    number_points(job.base_id + (set.offsets[part.strand] + part.first_span) * pieces, block.count, points, block);
     block.count += points;
   }
 }

@@ -5,7 +5,7 @@
 
 namespace pelage {
 
-/// Writes the refined points of strands first … end − 1 of the order in camera space to `block`, which has room for them: x, y, depth,
+/// Writes the refined points of parts first … end − 1 of the job in camera space to `block`, which has room for them: x, y, depth,
 /// half the width in metres as `radius`, and `id`.
 void camera_points(const AssembleJob& job, std::size_t first, std::size_t end, ScreenBlock& block);
 

@@ -60,6 +60,7 @@ std::uint32_t choose_subdivisions(const AssembleJob& job, float tolerable) {
 AssembleJob make_job(const GroomInstance& groom, const CameraView& view) {
   AssembleJob job;
   job.strands = groom.strands.get();
+  if (groom.only) job.parts = *groom.only;
   job.view = view;
   job.to_camera = compose(view.world_to_camera, groom.transform);
   job.width_scale = groom.width_scale * similarity_scale(groom.transform);

@@ -98,7 +98,7 @@ std::vector<std::uint32_t> sort_by_cell(const std::vector<std::uint16_t>& cells)
 }  // namespace
 
 std::vector<std::uint32_t> draw_order(const GroomInstance& groom, const CameraView& view) {
-  if (groom.only) return *groom.only;  // in the order of memory: far away strands cover few pixels
+  if (groom.only) return {};  // in the order of memory: far away strands cover few pixels
   const std::size_t count = groom.strands->strand_count();
   const Places places(groom, view);
   const Habit habit = study(places, count);

@@ -164,7 +164,7 @@ struct PictureSequence::State {
     stages.run("lod", "segments", [&](const Progress&) {
       drawn = thick->drawn(scene, view);
       if (thick->changed()) rig.reset();  // what casts shadows is what is seen
-      if (before) drawn_before = thick->drawn_alike(scene, *before, view);
+      if (before) drawn_before = thick->drawn_alike(*before, view);
       return StageWork{thick->segments(), 0};
     });
     return drawn;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "frame/strand_part.h"
 #include "light/environment.h"
 #include "light/light_view.h"
 #include "light/opacity_map.h"
@@ -23,12 +24,6 @@ constexpr std::size_t kLightStrands = 50000;
 
 bool emits(const Light& light) { return light.intensity.x > 0 || light.intensity.y > 0 || light.intensity.z > 0; }
 
-std::size_t strand_total(const Scene& scene) {
-  std::size_t total = 0;
-  for (const GroomInstance& groom : scene.grooms) total += drawn_strands(groom);
-  return total;
-}
-
 /// Everything that the maps of one light depend on.
 struct MapJob {
   const Scene& scene;
@@ -40,7 +35,9 @@ struct MapJob {
 };
 
 std::size_t stride_for(const Scene& scene, std::size_t strands) {
-  return std::max<std::size_t>(1, strand_total(scene) / strands);
+  std::size_t total = 0;
+  for (const GroomInstance& groom : scene.grooms) total += drawn_parts(groom);
+  return std::max<std::size_t>(1, total / strands);
 }
 
 /// Appends `group` to the rig, with its maps; all opacity maps of a group are drawn together.

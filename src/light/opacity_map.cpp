@@ -33,7 +33,7 @@ int segments_per_span(const StrandLines& lines, std::span<const CameraView> view
 struct Picked {
   const StrandLines* lines;
   int segments_per_span;
-  std::vector<std::uint32_t> strands;
+  std::vector<StrandPart> strands;
 };
 
 /// Calls body(block) for all strands of all grooms, a few thousand points at a time, in parallel.

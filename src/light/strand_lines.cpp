@@ -15,23 +15,23 @@
 namespace pelage {
 namespace {
 
-std::size_t span_stride(const StrandSet& set) { return set.basis == CurveBasis::kBezier ? 3 : 1; }
-
 Bounds control_bounds(const GroomInstance& groom) {
-  constexpr std::size_t kGrain = 1 << 16;
-  const std::vector<Vec3>& points = groom.strands->points;
-  std::vector<Bounds> part((points.size() + kGrain - 1) / kGrain);
-  parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kGrain = 1 << 10;
+  const StrandSet& set = *groom.strands;
+  std::vector<Bounds> boxes((drawn_parts(groom) + kGrain - 1) / kGrain);
+  parallel_for(drawn_parts(groom), kGrain, [&](std::size_t begin, std::size_t end) {
     Bounds box;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 p = transform_point(groom.transform, points[i]);
-      box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y), std::min(box.lower.z, p.z)};
-      box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y), std::max(box.upper.z, p.z)};
+    for (std::size_t s = begin; s < end; ++s) {
+      const StrandPart part = drawn_part(groom, s);
+      if (part.spans == 0) continue;
+      const Vec3* p = &set.points[first_point(set, part)];
+      const Vec3* last = p + part.spans * points_per_span(set.basis);
+      for (; p <= last; ++p) box.extend(transform_point(groom.transform, *p));
     }
-    part[begin / kGrain] = box;
+    boxes[begin / kGrain] = box;
   });
   Bounds all;
-  for (const Bounds& b : part) all.extend(b);
+  for (const Bounds& b : boxes) all.extend(b);
   return all;
 }
 
@@ -44,7 +44,7 @@ float mean_span_length(const GroomInstance& groom) {
     for (std::size_t i = set.offsets[s]; i + 1 < set.offsets[s + 1]; ++i, ++pieces)
       total += static_cast<double>(length(set.points[i + 1] - set.points[i]));
   if (pieces == 0) return 0;
-  return static_cast<float>(total / static_cast<double>(pieces)) * static_cast<float>(span_stride(set)) *
+  return static_cast<float>(total / static_cast<double>(pieces)) * static_cast<float>(points_per_span(set.basis)) *
          similarity_scale(groom.transform);
 }
 
@@ -52,14 +52,8 @@ void reserve(LineBlock& block, std::size_t points) {
   for (Buffer<float>* b : {&block.x, &block.y, &block.z, &block.width, &block.density}) b->resize(points + LineBlock::kPadding);
 }
 
-/// Points that a strand becomes.
-std::size_t line_points(const StrandSet& set, std::size_t strand, std::size_t segments) {
-  const std::size_t points = set.offsets[strand + 1] - set.offsets[strand];
-  return points < 2 ? 0 : (points - 1) / span_stride(set) * segments + 1;
-}
-
-/// One strand of [begin, begin + stride), below `count`. Which one is random: grooms have patterns in their order.
-std::size_t pick_strand(std::size_t begin, std::size_t stride, std::size_t count) {
+/// One number of [begin, begin + stride), below `count`. Which one is random: grooms have patterns in their order.
+std::size_t pick_one(std::size_t begin, std::size_t stride, std::size_t count) {
   constexpr std::uint64_t kSeed = 0x6f706163;
   const std::size_t choices = std::min(stride, count - begin);
   const float u = Rng(kSeed, static_cast<std::uint32_t>(begin)).uniform();
@@ -80,11 +74,11 @@ StrandLines::Band StrandLines::band(std::size_t point) const {
   return {wide, hair / wide};
 }
 
-void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const {
+void StrandLines::append(const StrandPart& part, const std::vector<Vec4>& weights, LineBlock& block) const {
   const StrandSet& set = *groom_->strands;
   const bool bezier = set.basis == CurveBasis::kBezier;
-  const std::size_t begin = set.offsets[strand], end = set.offsets[strand + 1], stride = span_stride(set);
-  if (end - begin < 2) return;
+  const std::size_t begin = set.offsets[part.strand], end = set.offsets[part.strand + 1], stride = points_per_span(set.basis);
+  if (part.spans == 0) return;
   const auto point = [&](std::size_t i) { return transform_point(groom_->transform, set.points[i]); };
   const auto put = [&](Vec3 p, Band from, Band to, float t) {
     const std::size_t j = block.count++;
@@ -92,9 +86,9 @@ void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, L
     block.x[j] = p.x, block.y[j] = p.y, block.z[j] = p.z, block.width[j] = width * width_scale_;
     block.density[j] = from.density + (to.density - from.density) * t;
   };
-  const std::size_t spans = (end - begin - 1) / stride;
+  const std::size_t first = part.first_span, last = first + part.spans;
   Vec3 p[4];
-  for (std::size_t s = 0; s < spans; ++s) {
+  for (std::size_t s = first; s < last; ++s) {
     const std::size_t i = begin + s * stride;
     const Band from = band(i), to = band(i + stride);
     if (weights.size() == 1 && !bezier && set.basis != CurveBasis::kBSpline) {  // through the control points
@@ -108,25 +102,26 @@ void StrandLines::append(std::size_t strand, const std::vector<Vec4>& weights, L
     for (std::size_t k = 0; k < weights.size(); ++k)
       put(kernel::curve_combine(weights[k], p[0], p[1], p[2], p[3]), from, to, (static_cast<float>(k) + 0.5f) / n);
   }
-  // Phantom points make every basis end at its last control point.
-  put(point(begin + spans * stride), {}, {}, 0);
+  if (set.basis == CurveBasis::kBSpline && begin + last + 1 < end)
+    put(kernel::curve_combine(basis_weights(set.basis, 1), p[0], p[1], p[2], p[3]), {}, {}, 0);
+  else  // phantom points make every basis end at its last control point
+    put(point(begin + last * stride), {}, {}, 0);
 }
 
-std::vector<std::uint32_t> StrandLines::pick(std::size_t stride, const CameraView& view) const {
+std::vector<StrandPart> StrandLines::pick(std::size_t stride, const CameraView& view) const {
   PELAGE_CHECK(stride >= 1);
-  std::vector<std::uint32_t> picked;
-  if (stride == 1) picked = draw_order(*groom_, view);
-  if (!picked.empty()) return picked;
-  picked.resize((strand_count() + stride - 1) / stride);
+  std::vector<std::uint32_t> order;
+  if (stride == 1) order = draw_order(*groom_, view);
+  std::vector<StrandPart> picked((part_count() + stride - 1) / stride);
   for (std::size_t i = 0; i < picked.size(); ++i) {
-    const std::size_t k = stride == 1 ? i : pick_strand(i * stride, stride, strand_count());
-    picked[i] = groom_->only ? (*groom_->only)[k] : static_cast<std::uint32_t>(k);
+    const std::size_t k = stride == 1 ? i : pick_one(i * stride, stride, part_count());
+    picked[i] = drawn_part(*groom_, order.empty() ? k : order[k]);
   }
   return picked;
 }
 
-std::size_t StrandLines::fill(const std::vector<std::uint32_t>& picked, std::size_t first, std::size_t last,
-                              int segments_per_span, LineBlock& block) const {
+std::size_t StrandLines::fill(const std::vector<StrandPart>& picked, std::size_t first, std::size_t last, int segments_per_span,
+                              LineBlock& block) const {
   PELAGE_CHECK(segments_per_span >= 1 && segments_per_span <= kMaxSegments);
   const StrandSet& set = *groom_->strands;
   const int n = set.basis == CurveBasis::kLinear ? 1 : segments_per_span;
@@ -134,7 +129,7 @@ std::size_t StrandLines::fill(const std::vector<std::uint32_t>& picked, std::siz
   for (int k = 0; k < n; ++k) weights.push_back(basis_weights(set.basis, static_cast<float>(k) / static_cast<float>(n)));
   std::size_t points = 0, s = first;
   for (; s < last && (s == first || points < LineBlock::kPoints); ++s)
-    points += line_points(set, picked[s], static_cast<std::size_t>(n));
+    points += picked[s].spans * static_cast<std::size_t>(n) + 1;
   reserve(block, points);
   block.count = 0;
   for (std::size_t i = first; i < s; ++i) append(picked[i], weights, block);

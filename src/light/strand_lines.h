@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "frame/strand_part.h"
 #include "light/splat.h"
 
 namespace pelage {
@@ -13,18 +14,19 @@ namespace pelage {
 /// A groom as polylines of a fixed number of segments per span. Refers to the groom: keep it alive.
 class StrandLines {
  public:
-  /// O(control points), for the bounds.
+  /// O(control points that are drawn), for the bounds.
   explicit StrandLines(const GroomInstance& groom);
 
-  std::size_t strand_count() const { return drawn_strands(*groom_); }
-  const Bounds& bounds() const { return bounds_; }  ///< of the control points, world space
+  std::size_t part_count() const { return drawn_parts(*groom_); }
+  const Bounds& bounds() const { return bounds_; }  ///< of the control points that are drawn, world space
   float mean_span() const { return mean_span_; }    ///< metres, over at most a thousand strands
 
-  /// One strand of each `stride` neighbors, picked by a random number of its own; all for stride 1, in the order that suits `view`.
-  std::vector<std::uint32_t> pick(std::size_t stride, const CameraView& view) const;
-  /// Fills `block` with the strands picked[first], … before picked[last]: at least one, as many as LineBlock::kPoints takes.
+  /// One strand, or part of one, of each `stride` neighbors, picked by a random number of its own; all for stride 1, in the order that
+  /// suits `view`.
+  std::vector<StrandPart> pick(std::size_t stride, const CameraView& view) const;
+  /// Fills `block` with picked[first], … before picked[last]: at least one, as many as LineBlock::kPoints takes.
   /// Returns where to go on. 1 ≤ segments_per_span ≤ kMaxSegments; linear grooms take one whatever is asked for.
-  std::size_t fill(const std::vector<std::uint32_t>& picked, std::size_t first, std::size_t last, int segments_per_span,
+  std::size_t fill(const std::vector<StrandPart>& picked, std::size_t first, std::size_t last, int segments_per_span,
                    LineBlock& block) const;
   static constexpr int kMaxSegments = 4;
 
@@ -34,7 +36,7 @@ class StrandLines {
     float width, density;
   };
   Band band(std::size_t point) const;
-  void append(std::size_t strand, const std::vector<Vec4>& weights, LineBlock& block) const;
+  void append(const StrandPart& part, const std::vector<Vec4>& weights, LineBlock& block) const;
 
   const GroomInstance* groom_;
   float width_scale_;

@@ -26,28 +26,20 @@ using kit::view_from;
 
 class Baselines : public testing::Test {
  protected:
-  std::vector<GroomInstance> draw_strands(const LodLevels& levels) const {
+  std::vector<GroomInstance> draw_strands(const LodCut& cut) const {
     const ThickenedStrands thickened(lod_);
-    return draw_levels(groom_, lod_, levels, groom_.strands->basis, thickened.pen(*groom_.strands, lod_, bounds_));
+    return draw_levels(groom_, cut, cuts_, groom_.strands->basis, thickened.pen(*groom_.strands, lod_, cuts_));
   }
-  std::vector<GroomInstance> draw_cards(const LodLevels& levels, const CameraView& view) const {
+  std::vector<GroomInstance> draw_cards(const LodCut& cut, const CameraView& view) const {
     const HairCards cards(*groom_.strands, lod_);
     const LodPlace place{lod_, view, compose(view.world_to_camera, groom_.transform)};
-    return draw_levels(groom_, lod_, levels, CurveBasis::kLinear, cards.pen(*groom_.strands, place, bounds_));
+    return draw_levels(groom_, cut, cuts_, CurveBasis::kLinear, cards.pen(*groom_.strands, place));
   }
-  LodLevels all(std::size_t level) const {
-    return LodLevels(bounds_.prisms() * kLodSegments, static_cast<std::uint8_t>(level));
-  }
-  LodLevels mixed() const {
-    LodLevels levels = all(0);
-    for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = static_cast<std::uint8_t>((i / 5) % (HairCards::kLevels + 1));
-    for (std::uint8_t& l : levels)
-      if (l == HairCards::kLevels) l = static_cast<std::uint8_t>(lod_.levels());
-    return levels;
-  }
+  LodCut all(std::size_t level) const { return one_level(lod_, level); }
+  LodCut mixed() const { return HairCards::choose({lod_, view_, view_.world_to_camera}, PrismHairs(lod_), 1, -1, {}); }
   const GroomInstance groom_ = groom_with_chain(HairStyle::kWavy, 1500);
   const LodHierarchy& lod_ = *groom_.lod;
-  const LevelBounds bounds_{lod_};
+  const StrandCuts cuts_{*groom_.strands};
   const CameraView view_ = view_from({1, 0.3f, 4});
 };
 
@@ -65,7 +57,7 @@ TEST_F(Baselines, ThickenedStrandsKeepWidthsAndTheBudget) {
   groom.strands = std::make_shared<const StrandSet>(even);
   for (std::size_t l = 0; l < lod_.levels(); ++l) {
     const ThickenedStrands thickened(lod_);
-    const auto drawn = draw_levels(groom, lod_, all(l), even.basis, thickened.pen(*groom.strands, lod_, bounds_));
+    const auto drawn = draw_levels(groom, all(l), cuts_, even.basis, thickened.pen(*groom.strands, lod_, cuts_));
     ASSERT_EQ(drawn.size(), 1u);
     const StrandSet& set = *drawn[0].strands;
     validate(set, "test");
@@ -95,15 +87,13 @@ TEST_F(Baselines, FewerStrandsAreAPartOfMore) {
 TEST_F(Baselines, StrandsAreKeptAtRandom) {
   const ThickenedStrands thickened(lod_);
   std::size_t same = 0, prisms = 0;
-  for (std::size_t p = 0; p < bounds_.prisms(); ++p) {
+  for (std::size_t p = 0; p < lod_.level(0).size(); ++p) {
     const ThickHair& hair = lod_.hairs[p];
+    const auto first = lod_.order.begin() + hair.first_strand;
+    ASSERT_NE(std::find(first, first + hair.fibers, thickened.strand(p)), first + hair.fibers);
     if (hair.fibers < 8) continue;
     ++prisms;
-    same += thickened.strands(lod_, p)[0] == lod_.order[hair.first_strand];
-    std::vector<std::uint32_t> mine(thickened.strands(lod_, p), thickened.strands(lod_, p) + hair.fibers),
-        theirs(&lod_.order[hair.first_strand], &lod_.order[hair.first_strand] + hair.fibers);
-    std::sort(mine.begin(), mine.end()), std::sort(theirs.begin(), theirs.end());
-    ASSERT_EQ(mine, theirs);
+    same += thickened.strand(p) == *first;
   }
   ASSERT_GT(prisms, 20u);
   EXPECT_LT(static_cast<double>(same) / static_cast<double>(prisms), 0.3);
@@ -155,10 +145,13 @@ TEST_F(Baselines, CardsAreFlat) {
 // Texels obey the rule that thick hairs obey; what would need finer levels than cards have is strands.
 TEST_F(Baselines, CardsAreChosenByTheirTexels) {
   const LodPlace place{lod_, view_, compose(view_.world_to_camera, groom_.transform)};
-  const LodLevels cards = HairCards::choose(place, bounds_, 0.25f, -1, {}),
-                  hairs = choose_levels(place, bounds_, 0.25f * HairCards::kColumns);
-  for (std::size_t i = 0; i < cards.size(); ++i) ASSERT_EQ(cards[i], hairs[i] < HairCards::kLevels ? hairs[i] : lod_.levels());
-  EXPECT_EQ(HairCards::choose(place, bounds_, 1, 9, {}), all(HairCards::kLevels - 1));
+  const PrismHairs prisms(lod_);
+  const LodCut cards = HairCards::choose(place, prisms, 0.25f, -1, {}),
+               hairs = choose_levels(place, prisms, 0.25f * HairCards::kColumns);
+  ASSERT_GT(lod_.levels(), HairCards::kLevels);
+  for (std::size_t h = 0; h < cards.size(); ++h)
+    ASSERT_EQ(cards[h], h < lod_.level_offsets[HairCards::kLevels] ? hairs[h] : cards[lod_.hairs[h].parent]);
+  EXPECT_EQ(HairCards::choose(place, prisms, 1, 9, {}), all(HairCards::kLevels - 1));
 }
 
 TEST_F(Baselines, AnyNumberOfThreadsDrawsTheSame) {

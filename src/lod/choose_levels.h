@@ -1,47 +1,35 @@
-// Which level of a chain of thick hairs is drawn where: cluster by cluster and segment by segment, by its width on the screen
+// Which level of a chain of thick hairs is drawn where: hair by hair and segment by segment, by its width on the screen
 // (Huang 2025, section 5.2; references.bib: Huang2025LevelOfDetail).
 #pragma once
 
 #include <pelage/lod.h>
-#include <pelage/scene.h>
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "frame/frame.h"
-#include "frame/section.h"
+#include "core/bounds.h"
+#include "lod/hair_widths.h"
 
 namespace pelage {
 
 /// Segments of a thick hair, of which each has a level.
 inline constexpr std::size_t kLodSegments = LodHierarchy::kPoints - 1;
+/// A bit for each.
+inline constexpr std::uint16_t kAllSegments = (1u << kLodSegments) - 1;
+
+/// Share of a hair's length that control point k lies at.
+inline float share_at(std::size_t k) { return static_cast<float>(k) / static_cast<float>(kLodSegments); }
 
 /// Direction of a thick hair at control point k, of any length.
 Vec3 hair_direction(const LodHierarchy& lod, std::size_t hair, std::size_t k);
 
-/// Where a groom's chain stands in a scene: what choosing needs of it.
-struct LodPlace {
-  const LodHierarchy& lod;
-  const CameraView& view;
-  Affine to_camera;  ///< object → camera, a similarity
-};
-
-/// The widest thick hair of every level in every prism, at every control point, from the side that shows the most and
-/// from the one that shows the least: bounds that spare most hairs a closer look. Metres, object space.
-class LevelBounds {
+/// Which hairs share the prism of a hair of level 0.
+class PrismHairs {
  public:
   /// O(hairs · kPoints).
-  explicit LevelBounds(const LodHierarchy& lod);
+  explicit PrismHairs(const LodHierarchy& lod);
 
-  struct Bound {
-    float widest = 0;     ///< no hair is wider
-    float narrowest = 0;  ///< some hair is no narrower
-    Vec3 lower, upper;    ///< box of the centers
-  };
-  const Bound& at(std::size_t level, std::size_t prism, std::size_t k) const {
-    return bounds_[(level * prisms_ + prism) * LodHierarchy::kPoints + k];
-  }
   /// Hairs first … last − 1 of a level move with this prism.
   struct Range {
     std::uint32_t first = 0, last = 0;
@@ -54,22 +42,25 @@ class LevelBounds {
   std::size_t prisms_;
   Bounds box_;
   std::vector<Range> ranges_;  // [levels · prisms]
-  std::vector<Bound> bounds_;  // [levels · prisms · kPoints]
 };
 
-/// The level of every segment of every prism, [prisms · kLodSegments]; lod.levels() stands for the strands themselves.
-using LodLevels = std::vector<std::uint8_t>;
+/// A cut through the tree of hairs at every segment, [hair_count]: bit k is set where segment k of the hair shows its children, or its
+/// strands where it has none. A hair shows its own segments where its parent's bit is set and its own is not; a bit is only set where
+/// the parent's is.
+using LodCut = std::vector<std::uint16_t>;
 
-/// The coarsest level whose hairs are nowhere in the segment wider than `pixels` on the screen; eq. 16 with as many steps at once as it
-/// takes. From `before`, the levels of the frame before (or empty), a segment goes to a coarser level only where that is narrower
-/// by a tenth, so that a width at the limit does not change levels forth and back. Segments before the near plane show strands.
+/// The coarsest hairs that are nowhere in a segment wider than `pixels` on the screen; eq. 16, with as many steps at once as it
+/// takes, for each hair by itself. Where `before`, the cut of the frame before (or empty), showed finer hairs, a hair comes back
+/// only where it is narrower by a tenth, so that a width at the limit does not change levels forth and back. Segments before the near plane show strands.
 ///
-/// The same for any number of threads. O(prisms · levels), and hairs where bounds leave it open.
-LodLevels choose_levels(const LodPlace& place, const LevelBounds& bounds, float pixels,
-                        std::span<const std::uint8_t> before = {});
+/// The same for any number of threads. O(hairs that are looked at): those that are shown and those above them.
+LodCut choose_levels(const LodPlace& place, const PrismHairs& prisms, float pixels, std::span<const std::uint16_t> before = {});
 inline constexpr float kCoarserBelow = 0.9f;  ///< of `pixels`
 
-/// The same level everywhere; the finest where there are fewer.
-LodLevels one_level(const LodHierarchy& lod, std::size_t level);
+/// The same level everywhere, the finest where there are fewer; `level` = lod.levels(): strands.
+LodCut one_level(const LodHierarchy& lod, std::size_t level);
+
+/// Segments that a hair shows.
+std::uint16_t shown_segments(const LodHierarchy& lod, const LodCut& split, std::size_t hair);
 
 }  // namespace pelage

@@ -5,11 +5,13 @@
 #include <pelage/runtime.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "frame/section.h"
 
 namespace pelage {
 namespace {
@@ -69,13 +71,75 @@ TEST(SectionExtent, FromItsEndAHairShowsItsAxes) {
   EXPECT_EQ(seen.thickness, 2);
 }
 
-TEST(LevelBounds, HairsOfAPrismHoldItsStrands) {
+struct Look {
+  CameraView view;
+  Affine to_world;
+  LodPlace place(const LodHierarchy& lod) const { return {lod, view, compose(view.world_to_camera, to_world)}; }
+};
+std::vector<Look> looks() {
+  const Affine turned{{{0, 0, 2, 0.1f}, {2, 0, 0, 0}, {0, 2, 0, -0.3f}}};  // and twice as large
+  std::vector<Look> all;
+  for (const Vec3 eye : {Vec3(0.3f, 0.2f, 1), Vec3(-4, 1, 3), Vec3(0, -1, 20)})
+    for (const bool orthographic : {false, true})
+      all.push_back({view_from(eye, orthographic), all.size() % 2 ? turned : Affine()});
+  return all;
+}
+
+// Pixels, by its definition.
+float width_by_definition(const LodPlace& place, std::size_t hair, std::size_t k) {
+  const std::size_t i = hair * kPoints + k;
+  const Vec3 center = transform_point(place.to_camera, place.lod.centers[i]);
+  if (center.z < place.view.near_plane) return INFINITY;
+  const auto turned = [&](Vec3 v) { return transform_vector(place.to_camera, v); };
+  const Vec3 to_eye = place.view.perspective ? Vec3() - center : Vec3(0, 0, -1);
+  return section_extent(turned(place.lod.major[i]), turned(place.lod.minor[i]), turned(hair_direction(place.lod, hair, k)),
+                        to_eye)
+             .width *
+         pixels_per_metre(place.view, center.z);
+}
+
+TEST(HairWidths, AreTheShadowsOfTheSections) {
+  const LodHierarchy& lod = groom(HairStyle::kCurly).lod;
+  for (const Look& look : looks()) {
+    const LodPlace place = look.place(lod);
+    const LodEye eye(place);
+    const float scale = similarity_scale(place.to_camera);
+    for (std::uint32_t h = 0; h < lod.hair_count(); h += 5) {
+      const HairWidths widths = hair_widths(lod, eye, h);
+      for (std::size_t k = 0; k < kPoints; ++k) {
+        const float pixels = width_by_definition(place, h, k);
+        if (std::isinf(pixels)) {
+          EXPECT_EQ(widths.pixels[k], pixels);
+          continue;
+        }
+        ASSERT_NEAR(widths.pixels[k], pixels, 2e-3f * pixels) << h << ' ' << k;
+        const float z = transform_point(place.to_camera, lod.centers[h * kPoints + k]).z;
+        ASSERT_NEAR(widths.metres[k] * scale * pixels_per_metre(look.view, z), pixels, 2e-3f * pixels);
+      }
+    }
+  }
+}
+
+TEST(HairWidths, FromItsEndAHairShowsItsLongerAxis) {
+  LodHierarchy lod;
+  for (std::size_t k = 0; k < kPoints; ++k) {
+    lod.centers.push_back({0, 0, -0.1f * static_cast<float>(k)});
+    lod.major.push_back({0.02f, 0, 0}), lod.minor.push_back({0, 0.01f, 0});
+  }
+  const CameraView view = view_from({0, 0, 1});
+  CameraView straight = view;
+  straight.world_to_camera = {{{1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 1}}};
+  const HairWidths widths = hair_widths(lod, LodEye({lod, straight, straight.world_to_camera}), 0);
+  for (const float w : widths.metres) EXPECT_FLOAT_EQ(w, 0.04f);
+}
+
+TEST(PrismHairs, HoldTheirStrands) {
   const LodHierarchy& lod = groom(HairStyle::kWavy).lod;
-  const LevelBounds bounds(lod);
-  ASSERT_EQ(bounds.prisms(), lod.level(0).size());
-  for (std::size_t p = 0; p < bounds.prisms(); ++p)
+  const PrismHairs prisms(lod);
+  ASSERT_EQ(prisms.prisms(), lod.level(0).size());
+  for (std::size_t p = 0; p < prisms.prisms(); ++p)
     for (std::size_t l = 0; l < lod.levels(); ++l) {
-      const LevelBounds::Range range = bounds.hairs(l, p);
+      const PrismHairs::Range range = prisms.hairs(l, p);
       std::uint32_t next = lod.hairs[p].first_strand, fibers = 0;
       for (std::uint32_t h = range.first; h < range.last; ++h) {
         ASSERT_EQ(lod.hairs[h].first_strand, next);
@@ -85,88 +149,89 @@ TEST(LevelBounds, HairsOfAPrismHoldItsStrands) {
     }
 }
 
-// Every hair of every level, one by one.
-float widest_by_definition(const LodPlace& place, const LevelBounds::Range& hairs, std::size_t k) {
-  float widest = 0;
-  for (std::size_t h = hairs.first; h < hairs.last; ++h) {
-    const std::size_t i = h * kPoints + k;
-    const Vec3* c = &place.lod.centers[h * kPoints];
-    const Vec3 center = transform_point(place.to_camera, c[k]);
-    if (center.z < place.view.near_plane) return INFINITY;
-    const auto turned = [&](Vec3 v) { return transform_vector(place.to_camera, v); };
-    const Vec3 along = turned(c[std::min(k + 1, kPoints - 1)] - c[k == 0 ? 0 : k - 1]);
-    const Vec3 to_eye = place.view.perspective ? Vec3() - center : Vec3(0, 0, -1);
-    const float width = width_by_points(turned(place.lod.major[i]), turned(place.lod.minor[i]), along, to_eye);
-    widest = std::fmax(widest, width * pixels_per_metre(place.view, center.z));
-  }
-  return widest;
-}
-
+// Of every hair: it is shown where it is narrow and none above it is.
 TEST(ChooseLevels, TakesTheCoarsestThatIsNarrow) {
   std::size_t between = 0;
   for (const HairStyle style : {HairStyle::kStraight, HairStyle::kCurly})
-    for (const Vec3 eye : {Vec3(0.3f, 0.2f, 1), Vec3(-4, 1, 3), Vec3(0, -1, 20)})
-      for (const bool orthographic : {false, true}) {
-        const LodHierarchy& lod = groom(style).lod;
-        const LevelBounds bounds(lod);
-        const CameraView view = view_from(eye, orthographic);
-        const LodPlace place{lod, view, compose(view.world_to_camera, Affine())};
-        for (const float pixels : {0.7f, 2.f, 9.f}) {
-          const LodLevels levels = choose_levels(place, bounds, pixels);
-          for (std::size_t p = 0; p < bounds.prisms(); p += 3)
-            for (std::size_t k = 0; k < kLodSegments; ++k) {
-              const std::size_t level = levels[p * kLodSegments + k];
-              const auto widest = [&](std::size_t l) {
-                return std::fmax(widest_by_definition(place, bounds.hairs(l, p), k),
-                                 widest_by_definition(place, bounds.hairs(l, p), k + 1));
-              };
-              const float drawn = level < lod.levels() ? widest(level) : 0, coarser = level > 0 ? widest(level - 1) : INFINITY;
-              ASSERT_LE(drawn, pixels * 1.001f);
-              ASSERT_GE(coarser, pixels * 0.999f);
-              between += level > 0 && level < lod.levels();
-            }
-        }
+    for (const Look& look : looks()) {
+      const LodHierarchy& lod = groom(style).lod;
+      const LodPlace place = look.place(lod);
+      for (const float pixels : {0.7f, 2.f, 9.f}) {
+        const LodCut cut = choose_levels(place, PrismHairs(lod), pixels);
+        for (std::size_t h = 0; h < lod.hair_count(); h += 3)
+          for (std::size_t k = 0; k < kLodSegments; ++k) {
+            const auto widest = [&](std::size_t hair) {
+              return std::fmax(width_by_definition(place, hair, k), width_by_definition(place, hair, k + 1));
+            };
+            const bool shown = shown_segments(lod, cut, h) >> k & 1, strands = cut[h] >> k & 1;
+            ASSERT_TRUE(!shown || widest(h) <= pixels * 1.003f);
+            ASSERT_TRUE(!strands || widest(h) >= pixels * 0.997f);
+            for (std::uint32_t up = lod.hairs[h].parent; up != LodHierarchy::kNone; up = lod.hairs[up].parent)
+              ASSERT_TRUE(!(shown || strands) || widest(up) >= pixels * 0.997f);
+            between += shown && h >= lod.level_offsets[1];
+          }
       }
+    }
   EXPECT_GT(between, 1000u);
+}
+
+// A cut: on the way from the root of the tree to every strand exactly one hair, or else the strand, is shown at every segment.
+TEST(ChooseLevels, ShowsEveryStrandOnce) {
+  const LodHierarchy& lod = groom(HairStyle::kWavy).lod;
+  for (const Look& look : looks()) {
+    const LodCut cut = choose_levels(look.place(lod), PrismHairs(lod), 2);
+    const std::size_t finest = lod.level_offsets[lod.levels() - 1];
+    for (std::size_t h = finest; h < lod.hair_count(); ++h) {
+      std::uint32_t seen = cut[h], twice = 0;
+      for (std::size_t up = h; up != LodHierarchy::kNone; up = lod.hairs[up].parent) {
+        const std::uint32_t shown = shown_segments(lod, cut, up);
+        twice |= seen & shown, seen |= shown;
+      }
+      ASSERT_EQ(seen, kAllSegments);
+      ASSERT_EQ(twice, 0u);
+    }
+  }
 }
 
 // Eq. 16 with its hysteresis: what is drawn goes to a coarser level only when that is narrower by a tenth.
 TEST(ChooseLevels, AWidthAtTheLimitDoesNotChangeLevelsBackAndForth) {
   const LodHierarchy& lod = groom(HairStyle::kWavy).lod;
-  const LevelBounds bounds(lod);
-  const auto at = [&](float distance, const LodLevels& before) {
+  const PrismHairs prisms(lod);
+  const auto at = [&](float distance, const LodCut& before) {
     const CameraView view = view_from({0, 0, distance});
-    return choose_levels({lod, view, compose(view.world_to_camera, Affine())}, bounds, 2, before);
+    return choose_levels({lod, view, compose(view.world_to_camera, Affine())}, prisms, 2, before);
   };
-  LodLevels levels = at(8, {});
-  for (int frame = 0; frame < 60; ++frame) ASSERT_EQ(at(8, levels), levels) << "a still camera";
+  const auto bits = [](const LodCut& cut) {
+    std::size_t all = 0;
+    for (const std::uint16_t c : cut) all += static_cast<std::size_t>(std::popcount(c));
+    return all;
+  };
+  const LodCut cut = at(8, {});
+  for (int frame = 0; frame < 60; ++frame) ASSERT_EQ(at(8, cut), cut) << "a still camera";
   const auto changes = [&](bool remembering) {
-    LodLevels now = at(8, {});
+    LodCut now = at(8, {});
     std::size_t changed = 0;
     for (int frame = 0; frame < 20; ++frame) {
-      const LodLevels next = at(frame % 2 ? 8 : 8.3f, remembering ? now : LodLevels());
-      for (std::size_t i = 0; i < next.size(); ++i) changed += next[i] != now[i];
+      const LodCut next = at(frame % 2 ? 8 : 8.3f, remembering ? now : LodCut());
+      for (std::size_t h = 0; h < next.size(); ++h)
+        changed += static_cast<std::size_t>(std::popcount(static_cast<std::uint16_t>(next[h] ^ now[h])));
       now = next;
     }
     return changed;
   };
   EXPECT_GT(changes(false), 100u);
   EXPECT_EQ(changes(true), 0u);
-  const LodLevels far = at(16, levels), never = at(16, {});
-  std::size_t coarser = 0;
-  for (std::size_t i = 0; i < far.size(); ++i) {
-    ASSERT_GE(far[i], never[i]);
-    coarser += far[i] < levels[i];
-  }
-  EXPECT_GT(coarser, far.size() / 20) << "who goes far enough away changes all the same";
+  const LodCut far = at(16, cut), never = at(16, {});
+  for (std::size_t h = 0; h < far.size(); ++h) ASSERT_EQ(far[h] & never[h], never[h]);
+  EXPECT_GT(bits(far), bits(never));
+  EXPECT_LT(bits(far), bits(cut) * 9 / 10) << "who goes far enough away changes all the same";
 }
 
 TEST(ChooseLevels, BeforeTheNearPlaneThereAreStrands) {
   const LodHierarchy& lod = groom(HairStyle::kStraight).lod;
-  const LevelBounds bounds(lod);
   const CameraView view = view_from({0, 0.1f, 0.01f});
-  const LodLevels levels = choose_levels({lod, view, compose(view.world_to_camera, Affine())}, bounds, 64);
-  EXPECT_GT(std::count(levels.begin(), levels.end(), lod.levels()), 0);
+  const LodCut cut = choose_levels({lod, view, compose(view.world_to_camera, Affine())}, PrismHairs(lod), 64);
+  EXPECT_GT(std::count_if(cut.begin() + lod.level_offsets[lod.levels() - 1], cut.end(), [](auto c) { return c != 0; }), 0);
 }
 
 TEST(ChooseLevels, AnyNumberOfThreadsChoosesTheSame) {
@@ -174,9 +239,9 @@ TEST(ChooseLevels, AnyNumberOfThreadsChoosesTheSame) {
   const CameraView view = view_from({0, 0, 6});
   const LodPlace place{lod, view, compose(view.world_to_camera, Affine())};
   set_thread_count(1);
-  const LodLevels one = choose_levels(place, LevelBounds(lod), 2);
+  const LodCut one = choose_levels(place, PrismHairs(lod), 2);
   set_thread_count(3);
-  EXPECT_EQ(choose_levels(place, LevelBounds(lod), 2), one);
+  EXPECT_EQ(choose_levels(place, PrismHairs(lod), 2), one);
   set_thread_count(0);
 }
 

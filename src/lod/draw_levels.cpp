@@ -5,80 +5,83 @@
 #include <memory>
 
 #include "core/parallel.h"
-#include "frame/camera_view.h"
 
 namespace pelage {
 namespace {
 
 constexpr std::size_t kPoints = LodHierarchy::kPoints;
-constexpr std::size_t kPrismsPerTask = 32;
+constexpr std::size_t kHairsPerTask = 256;
+constexpr std::size_t kStrandsPerTask = 4096;
 
 /// Draws thick hairs of one groom as an eye sees them.
 class ThickHairPen {
  public:
-  ThickHairPen(const StrandSet& set, const LodPlace& place, const LevelBounds& bounds)
-      : set_(set), place_(place), bounds_(bounds), to_eye_(place) {}
+  ThickHairPen(const StrandSet& set, const LodPlace& place) : set_(set), lod_(place.lod), eye_(place) {}
 
-  void operator()(std::size_t prism, const LodRun& run, Pieces& out) const {
-    const LevelBounds::Range hairs = bounds_.hairs(run.level, prism);
-    for (std::uint32_t h = hairs.first; h < hairs.last; ++h) add_hair(h, run, out);
-  }
-
- private:
-  void add_hair(std::uint32_t h, const LodRun& run, Pieces& out) const {
-    const LodHierarchy& lod = place_.lod;
-    const float fibers = static_cast<float>(lod.hairs[h].fibers) * crossing_ratio(lod.length_ratios[h]);
+  void operator()(std::uint32_t h, std::size_t level, const LodRun& run, Pieces& out) const {
+    const HairWidths bands = hair_widths(lod_, eye_, h);
+    const float fibers = static_cast<float>(lod_.hairs[h].fibers) * crossing_ratio(lod_.length_ratios[h]),
+                spread = direction_variance(lod_.length_ratios[h]);
     ThickSections& sections = out.sections;
     for (std::size_t k = run.first; k <= run.last; ++k) {
       const std::size_t i = std::size_t{h} * kPoints + k;
-      const Vec3 knot = hair_knot(lod, h, k);
-      const float band = section_extent(lod.major[i], lod.minor[i], hair_direction(lod, h, k), to_eye_(knot)).width,
-                  fiber = 2 * lod.radii[i];
-      out.hairs.points.push_back(knot), out.hairs.widths.push_back(covered_width(band, fiber, fibers));
-      sections.major.push_back(lod.major[i]), sections.minor.push_back(lod.minor[i]);
-      sections.fibers.push_back(fibers), sections.diameters.push_back(fiber);
-      sections.spreads.push_back(direction_variance(lod.length_ratios[h]));
+      const float fiber = 2 * lod_.radii[i];
+      out.hairs.points.push_back(hair_knot(lod_, h, k));
+      out.hairs.widths.push_back(covered_width(bands.metres[k], fiber, fibers));
+      sections.major.push_back(lod_.major[i]), sections.minor.push_back(lod_.minor[i]);
+      sections.fibers.push_back(fibers), sections.diameters.push_back(fiber), sections.spreads.push_back(spread);
     }
-    sections.levels.push_back(static_cast<std::uint8_t>(run.level));
-    append_attributes(lod, h, set_, out.hairs);
+    sections.levels.push_back(static_cast<std::uint8_t>(level));
+    append_attributes(lod_, h, set_, out.hairs);
     end_strand(out.hairs);
   }
 
+ private:
   const StrandSet& set_;
-  const LodPlace& place_;
-  const LevelBounds& bounds_;
-  const ToEye to_eye_;
+  const LodHierarchy& lod_;
+  const LodEye eye_;
 };
 
-/// One prism: strands where its segments show them, `clusters` elsewhere.
-void draw_prism(const StrandSet& set, const LodHierarchy& lod, const std::uint8_t* levels, std::size_t prism,
-                const DrawClusters& clusters, const StrandSet* measured, Pieces& out) {
-  const ThickHair& all = lod.hairs[prism];
-  const auto* strands = &lod.order[all.first_strand];
-  for (std::size_t first = 0, last; first < kLodSegments; first = last) {
-    for (last = first + 1; last < kLodSegments && levels[last] == levels[first];) ++last;
-    if (levels[first] < lod.levels()) clusters(prism, {first, last, levels[first]}, out);
-    else if (first == 0 && last == kLodSegments) out.whole.insert(out.whole.end(), strands, strands + all.fibers);
-    else
-      for (std::uint32_t i = 0; i < all.fibers; ++i)
-        append_strand(set, strands[i], share_at(first), share_at(last), 1, out.strands, measured);
+/// What stands for the hairs that `cut` shows, level by level.
+Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster& draw) {
+  std::vector<Pieces> parts;
+  for (std::size_t level = 0; level < lod.levels(); ++level) {
+    const std::size_t first = lod.level_offsets[level], count = lod.level(level).size(), before = parts.size();
+    parts.resize(before + (count + kHairsPerTask - 1) / kHairsPerTask);
+    parallel_for(count, kHairsPerTask, [&](std::size_t begin, std::size_t end) {
+      Pieces& part = parts[before + begin / kHairsPerTask];
+      part.hairs.offsets = {0};
+      for (std::size_t h = first + begin; h < first + end; ++h)
+        for_each_run(shown_segments(lod, cut, h),
+                     [&](const LodRun& run) { draw(static_cast<std::uint32_t>(h), level, run, part); });
+    });
   }
+  return join(parts);
 }
 
-Pieces make_pieces(const StrandSet& set, const LodHierarchy& lod, const LodLevels& levels, const DrawClusters& clusters,
-                   const StrandSet* measured) {
-  const std::size_t prisms = levels.size() / kLodSegments;
-  std::vector<Pieces> parts((prisms + kPrismsPerTask - 1) / kPrismsPerTask);
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      parts[i].strands.offsets = parts[i].hairs.offsets = {0};
-      for (std::size_t p = i * kPrismsPerTask; p < std::min(prisms, (i + 1) * kPrismsPerTask); ++p)
-        draw_prism(set, lod, &levels[p * kLodSegments], p, clusters, measured, parts[i]);
-    }
+/// Segments of every strand that are drawn as they are: those where its finest hair is split.
+std::vector<std::uint16_t> strand_segments(const LodHierarchy& lod, const LodCut& cut) {
+  std::vector<std::uint16_t> segments(lod.strand_count());
+  const std::size_t first = lod.level_offsets[lod.levels() - 1];
+  parallel_for(lod.hair_count() - first, kHairsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t h = first + begin; h < first + end; ++h)
+      for (std::uint32_t i = 0; i < lod.hairs[h].fibers; ++i) segments[lod.order[lod.hairs[h].first_strand + i]] = cut[h];
   });
-  Pieces all;
-  all.strands.offsets = all.hairs.offsets = {0};
-  for (const Pieces& part : parts) append(part, all);
+  return segments;
+}
+
+/// The parts of strands along their segments, in the order of memory.
+std::vector<StrandPart> strand_parts(const std::vector<std::uint16_t>& segments, const StrandCuts& cuts) {
+  std::vector<std::vector<StrandPart>> tasks((segments.size() + kStrandsPerTask - 1) / kStrandsPerTask);
+  parallel_for(segments.size(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      for_each_run(segments[s], [&](const LodRun& run) {
+        const StrandPart part = cuts.part(static_cast<std::uint32_t>(s), run.first, run.last);
+        if (part.spans > 0) tasks[begin / kStrandsPerTask].push_back(part);
+      });
+  });
+  std::vector<StrandPart> all;
+  for (const std::vector<StrandPart>& parts : tasks) all.insert(all.end(), parts.begin(), parts.end());
   return all;
 }
 
@@ -96,48 +99,26 @@ float covered_width(float band, float fiber, float fibers) {
   return band * -std::expm1(fibers * std::log1p(-fiber / band));
 }
 
-ToEye::ToEye(const LodPlace& place) : place_(place) {
-  const Affine& to_camera = place.to_camera;
-  const float scale = similarity_scale(to_camera);
-  for (int i = 0; i < 3; ++i) {  // columns of the inverse's rotation are the rows of this one
-    Vec3& axis = i == 0 ? x_ : i == 1 ? y_ : z_;
-    axis = Vec3(to_camera.m[i][0], to_camera.m[i][1], to_camera.m[i][2]) / scale;
-  }
-}
+DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place) { return ThickHairPen(strands, place); }
 
-Vec3 ToEye::operator()(Vec3 p) const {
-  const Vec3 there = place_.view.perspective ? transform_point(place_.to_camera, p) * -1.f : Vec3(0, 0, -1);
-  return x_ * there.x + y_ * there.y + z_ * there.z;
-}
-
-std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodPlace& place, const LevelBounds& bounds,
-                                       const LodLevels& levels, const StrandSet* measured) {
-  return draw_levels(groom, place.lod, levels, CurveBasis::kCatmullRom, ThickHairPen(*groom.strands, place, bounds), measured);
-}
-
-std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodHierarchy& lod, const LodLevels& levels,
-                                       CurveBasis basis, const DrawClusters& clusters, const StrandSet* measured) {
-  const std::size_t strands = groom.strands->strand_count();
-  if (std::all_of(levels.begin(), levels.end(), [&](std::uint8_t l) { return l == lod.levels(); })) return {groom};
-  Pieces pieces = make_pieces(*groom.strands, lod, levels, clusters, measured);
-  pieces.strands.basis = groom.strands->basis, pieces.hairs.basis = basis;
+std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut& cut, const StrandCuts& cuts, CurveBasis basis,
+                                       const DrawCluster& draw) {
+  const LodHierarchy& lod = *groom.lod;
+  const std::vector<std::uint16_t> segments = strand_segments(lod, cut);
+  if (std::all_of(segments.begin(), segments.end(), [](std::uint16_t s) { return s == kAllSegments; })) return {groom};
   std::vector<GroomInstance> drawn;
-  if (!pieces.whole.empty()) {
-    std::sort(pieces.whole.begin(), pieces.whole.end());
+  std::vector<StrandPart> parts = strand_parts(segments, cuts);
+  if (!parts.empty()) {
     drawn.push_back(groom);
-    if (pieces.whole.size() < strands)
-      drawn.back().only = std::make_shared<const std::vector<std::uint32_t>>(std::move(pieces.whole));
+    drawn.back().only = std::make_shared<const std::vector<StrandPart>>(std::move(parts));
   }
-  const auto add = [&](StrandSet& set, const char* what) -> GroomInstance* {
-    if (set.points.empty()) return nullptr;
-    drawn.push_back(groom);
-    drawn.back().name += what;
-    drawn.back().strands = std::make_shared<const StrandSet>(std::move(set));
-    return &drawn.back();
-  };
-  add(pieces.strands, " (pieces)");
-  if (GroomInstance* hairs = add(pieces.hairs, " (thick hairs)"))
-    hairs->sections = std::make_shared<const ThickSections>(std::move(pieces.sections));
+  Pieces pieces = make_pieces(lod, cut, draw);
+  if (pieces.hairs.points.empty()) return drawn;
+  pieces.hairs.basis = basis;
+  GroomInstance& hairs = drawn.emplace_back(groom);
+  hairs.name += " (thick hairs)";
+  hairs.strands = std::make_shared<const StrandSet>(std::move(pieces.hairs));
+  hairs.sections = std::make_shared<const ThickSections>(std::move(pieces.sections));
   return drawn;
 }
 

@@ -1,4 +1,4 @@
-// A groom as its chosen levels of detail show it: some strands as they are, pieces of strands, and pieces of thick hairs.
+// A groom as its chosen levels of detail show it: strands, parts of strands, and pieces of thick hairs.
 #pragma once
 
 #include <pelage/lod.h>
@@ -8,6 +8,7 @@
 
 #include "lod/choose_levels.h"
 #include "lod/pieces.h"
+#include "lod/strand_cuts.h"
 
 namespace pelage {
 
@@ -23,29 +24,14 @@ float crossing_ratio(float length_ratio);
 /// Such fibers' variance of direction about the center's, along each axis across it: sin²δ/2. Radians², 0…½.
 float direction_variance(float length_ratio);
 
-/// What stands for `groom` (which has `lod`) where its segments have `levels`: the groom itself with GroomInstance::only the strands that are
-/// drawn whole; its strands in pieces; its thick hairs in pieces, each point as wide as covered_width() of the cross-section that `view`
-/// sees, with GroomInstance::sections. What is empty is left out; a groom of which all strands are drawn is returned as it is.
-///
-/// Thick hairs are Catmull-Rom curves through the knots of their B-splines, so pieces of one hair meet exactly. Pieces of strands reach from the
-/// control point before their place to the one after, by the lengths of `measured`, the strands in another pose, where it is given: so two
-/// poses are cut alike. The same for any number of threads. O(what is drawn).
-std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodPlace& place, const LevelBounds& bounds,
-                                       const LodLevels& levels, const StrandSet* measured = nullptr);
+/// What stands for `groom` (which has `lod`) where its hairs have the levels of `cut`: the groom itself with GroomInstance::only what is drawn of
+/// its strands, and curves of `basis` with GroomInstance::sections, which `draw` makes of each hair that shows. What is empty is left out; a groom of
+/// which all strands are drawn is returned as it is. The same for any number of threads. O(what is drawn).
+std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut& cut, const StrandCuts& cuts, CurveBasis basis,
+                                       const DrawCluster& draw);
 
-/// The same with something else than thick hairs where levels are not strands: what `clusters` draws, curves of `basis`.
-std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodHierarchy& lod, const LodLevels& levels,
-                                       CurveBasis basis, const DrawClusters& clusters, const StrandSet* measured = nullptr);
-
-/// Directions from places of a groom to the eye, in the groom's space; of any length.
-class ToEye {
- public:
-  explicit ToEye(const LodPlace& place);  ///< refers to it
-  Vec3 operator()(Vec3 p) const;
-
- private:
-  const LodPlace& place_;
-  Vec3 x_, y_, z_;  // axes of the camera in the groom's space
-};
+/// Draws thick hairs: Catmull-Rom curves through the knots of their B-splines, so that pieces of one hair meet exactly, each point as wide as
+/// covered_width() of the cross-section that `place` sees. Refers to its arguments.
+DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place);
 
 }  // namespace pelage

@@ -10,9 +10,11 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "core/rng.h"
 #include "frame/camera_view.h"
+#include "frame/strand_part.h"
 #include "kit/grown_chain.h"
 #include "light/strand_lines.h"
 #include "lod/thick_hairs.h"
@@ -27,15 +29,20 @@ using kit::view_from;
 
 class DrawLevels : public testing::Test {
  protected:
-  std::vector<GroomInstance> draw(const LodLevels& levels) const {
-    return draw_levels(groom_, {*groom_.lod, view_, compose(view_.world_to_camera, groom_.transform)}, bounds_, levels);
+  std::vector<GroomInstance> draw(const LodCut& cut) const {
+    const LodPlace place{lod_, view_, compose(view_.world_to_camera, groom_.transform)};
+    return draw_levels(groom_, cut, cuts_, CurveBasis::kCatmullRom, thick_hair_pen(*groom_.strands, place));
   }
-  LodLevels all(std::size_t level) const {
-    return LodLevels(bounds_.prisms() * kLodSegments, static_cast<std::uint8_t>(level));
+  LodCut all(std::size_t level) const { return one_level(lod_, level); }
+  /// Of every hair of `level` its strands on these segments, the hair on others.
+  LodCut strands_on(std::uint16_t segments, std::size_t level) const {
+    LodCut cut = all(level);
+    for (std::size_t h = lod_.level_offsets[level]; h < lod_.hair_count(); ++h) cut[h] = segments;
+    return cut;
   }
   const GroomInstance groom_ = groom_with_chain();
   const LodHierarchy& lod_ = *groom_.lod;
-  const LevelBounds bounds_{lod_};
+  const StrandCuts cuts_{*groom_.strands};
   const CameraView view_ = view_from({1, 0.3f, 4});
 };
 
@@ -118,66 +125,83 @@ TEST_F(DrawLevels, EveryLevelStandsForAllFibers) {
 
 // Half of the prisms by strands, the other half thick: nothing twice, nothing lost.
 TEST_F(DrawLevels, WholeStrandsAreOnlyThoseOfTheirPrisms) {
-  LodLevels levels = all(lod_.levels());
+  const std::size_t prisms = lod_.level(0).size();
+  LodCut cut(lod_.hair_count());
   std::size_t thick = 0, whole = 0;
-  for (std::size_t p = 0; p < bounds_.prisms(); ++p) {
-    if (p % 2 == 0) std::fill_n(levels.begin() + static_cast<std::ptrdiff_t>(p * kLodSegments), kLodSegments, 0);
-    (p % 2 == 0 ? thick : whole) += p % 2 == 0 ? 1 : lod_.hairs[p].fibers;
+  for (std::size_t h = 0; h < cut.size(); ++h) {
+    const std::uint32_t parent = lod_.hairs[h].parent;
+    cut[h] = parent == LodHierarchy::kNone ? (h % 2 == 0 ? 0 : kAllSegments) : cut[parent];
+    if (h < prisms) (h % 2 == 0 ? thick : whole) += h % 2 == 0 ? 1 : lod_.hairs[h].fibers;
   }
-  const auto drawn = draw(levels);
+  const auto drawn = draw(cut);
   ASSERT_EQ(drawn.size(), 2u);
-  EXPECT_EQ(drawn_strands(drawn[0]), whole);
+  EXPECT_EQ(drawn_parts(drawn[0]), whole);
   EXPECT_EQ(drawn[1].strands->strand_count(), thick);
-  const std::set<std::uint32_t> kept(drawn[0].only->begin(), drawn[0].only->end());
-  for (std::size_t p = 0; p < bounds_.prisms(); ++p)
+  std::set<std::uint32_t> kept;
+  for (const StrandPart& part : *drawn[0].only) {
+    EXPECT_EQ(part, whole_strand(*groom_.strands, part.strand));
+    kept.insert(part.strand);
+  }
+  for (std::size_t p = 0; p < prisms; ++p)
     for (std::uint32_t i = 0; i < lod_.hairs[p].fibers; ++i)
       ASSERT_EQ(kept.count(lod_.order[lod_.hairs[p].first_strand + i]), p % 2);
 }
 
-// A strand that turns into thick hair: its piece starts at or before its place and ends at or behind it, and no farther than a span.
-TEST_F(DrawLevels, PiecesOfStrandsCoverTheirPart) {
-  LodLevels levels = all(lod_.levels());
-  for (std::size_t p = 0; p < bounds_.prisms(); ++p)
-    for (std::size_t k = 0; k < kLodSegments; ++k)
-      if (k < 4 || k >= 9) levels[p * kLodSegments + k] = 1;
-  const auto drawn = draw(levels);
+// A strand that turns into thick hair: its part starts and ends where the hair does, to half a span, and no place is drawn twice.
+TEST_F(DrawLevels, PartsOfStrandsAreCutWhereTheHairIs) {
+  const auto drawn = draw(strands_on(0b000000111110000, 1));
   ASSERT_EQ(drawn.size(), 2u);
-  const StrandSet &pieces = *drawn[0].strands, &whole = *groom_.strands;
-  validate(pieces, "test");
-  ASSERT_EQ(pieces.strand_count(), whole.strand_count());
-  for (std::size_t s = 0; s < pieces.strand_count(); ++s) {
-    const std::size_t of = lod_.order[s];
+  const StrandSet& whole = *groom_.strands;
+  ASSERT_EQ(drawn[0].strands, groom_.strands);
+  ASSERT_EQ(drawn[0].only->size(), whole.strand_count());
+  double off = 0;
+  for (const StrandPart& part : *drawn[0].only) {
     std::vector<float> at{0};
-    for (std::size_t i = whole.offsets[of] + 1; i < whole.offsets[of + 1]; ++i)
+    for (std::size_t i = whole.offsets[part.strand] + 1; i < whole.offsets[part.strand + 1]; ++i)
       at.push_back(at.back() + length(whole.points[i] - whole.points[i - 1]));
-    const auto place = [&](Vec3 p) {
-      for (std::size_t i = 0; i < at.size(); ++i)
-        if (whole.points[whole.offsets[of] + i] == p) return i;
-      return at.size();
-    };
-    const std::size_t first = place(pieces.points[pieces.offsets[s]]), last = place(pieces.points[pieces.offsets[s + 1] - 1]);
-    ASSERT_LT(last, at.size());
-    ASSERT_LE(at[first], at.back() * 4 / 15);
-    ASSERT_GT(at[first + 1], at.back() * 4 / 15);
-    ASSERT_GE(at[last], at.back() * 9 / 15);
-    ASSERT_LT(at[last - 1], at.back() * 9 / 15);
+    for (const auto& [span, share] : {std::pair(part.first_span, 4 / 15.f), {part.first_span + part.spans, 9 / 15.f}}) {
+      const float wanted = share * at.back();
+      ASSERT_LE(wanted, 0.5f * (at[span] + at[span + 1]) * 1.00001f);
+      ASSERT_GE(wanted, 0.5f * (at[span] + at[span - 1]) * 0.99999f);
+      off += static_cast<double>((at[span] - wanted) / at.back()) / static_cast<double>(whole.strand_count());
+    }
   }
+  EXPECT_LT(std::fabs(off), 0.25 / 23) << "as often too long as too short";
   const StrandSet& hairs = *drawn[1].strands;
+  validate(hairs, "test");
   EXPECT_EQ(hairs.strand_count(), 2 * lod_.level(1).size());
   EXPECT_EQ(hairs.offsets[1], 5u);
   EXPECT_EQ(hairs.offsets[2], 5u + 7u);
 }
 
+// Hairs of the same prism may have different levels, and so may segments of one.
+TEST_F(DrawLevels, ChildrenStandForAPartOfTheirParent) {
+  LodCut cut(lod_.hair_count());
+  const ThickHair& parent = lod_.hairs[0];
+  cut[0] = 0b000000000000111;
+  const auto drawn = draw(cut);
+  ASSERT_EQ(drawn.size(), 1u);
+  const StrandSet& set = *drawn[0].strands;
+  ASSERT_EQ(set.strand_count(), lod_.level(0).size() + parent.children);
+  EXPECT_EQ(set.offsets[1], 13u) << "from control point 3 to 15";
+  for (std::size_t c = 0; c < parent.children; ++c) {
+    const std::size_t s = lod_.level(0).size() + c;
+    EXPECT_EQ(set.offsets[s + 1] - set.offsets[s], 4u);
+    EXPECT_EQ(drawn[0].sections->levels[s], 1);
+  }
+}
+
 TEST_F(DrawLevels, AnyNumberOfThreadsDrawsTheSame) {
-  LodLevels levels = all(0);
-  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = static_cast<std::uint8_t>((i / 5) % (lod_.levels() + 1));
+  const LodCut cut = strands_on(0b000000111110000, 2);
   set_thread_count(1);
-  const auto one = draw(levels);
+  const auto one = draw(cut);
   set_thread_count(3);
-  const auto three = draw(levels);
+  const auto three = draw(cut);
   set_thread_count(0);
   ASSERT_EQ(one.size(), three.size());
   for (std::size_t g = 0; g < one.size(); ++g) {
+    ASSERT_EQ(one[g].only == nullptr, three[g].only == nullptr);
+    EXPECT_TRUE(!one[g].only || *one[g].only == *three[g].only);
     EXPECT_EQ(one[g].strands->points, three[g].strands->points);
     EXPECT_EQ(one[g].strands->widths, three[g].strands->widths);
   }
@@ -191,17 +215,17 @@ Scene every_third(bool by_only) {
   all->widths = {0.002f}, all->colors.clear();
   Scene scene;
   scene.grooms.resize(1);
-  std::vector<std::uint32_t> numbers;
+  std::vector<StrandPart> parts;
   auto some = std::make_shared<StrandSet>();
   some->basis = all->basis, some->widths = all->widths, some->offsets = {0};
   for (std::uint32_t i = 1; i < all->strand_count(); i += 3) {
-    numbers.push_back(i);
+    parts.push_back(whole_strand(*all, i));
     for (std::uint32_t p = all->offsets[i]; p < all->offsets[i + 1]; ++p) some->points.push_back(all->points[p]);
     some->offsets.push_back(static_cast<std::uint32_t>(some->points.size()));
   }
   if (by_only) {
     scene.grooms[0].strands = all;
-    scene.grooms[0].only = std::make_shared<const std::vector<std::uint32_t>>(numbers);
+    scene.grooms[0].only = std::make_shared<const std::vector<StrandPart>>(parts);
   } else {
     scene.grooms[0].strands = some;
   }
@@ -233,15 +257,53 @@ TEST(Only, StrandsThatAreLeftOutAreNotThere) {
   EXPECT_EQ(render(told).linear.pixels, render(made).linear.pixels);
 }
 
+/// All strands in two parts each, or whole.
+Scene in_parts(CurveBasis basis, bool cut) {
+  Scene scene = every_third(true);
+  auto set = std::make_shared<StrandSet>(*scene.grooms[0].strands);
+  set->basis = basis;
+  scene.grooms[0].strands = set;
+  std::vector<StrandPart> parts;
+  for (std::uint32_t s = 0; s < set->strand_count(); ++s) {
+    const StrandPart whole = whole_strand(*set, s);
+    if (cut) parts.push_back({s, 0, 2}), parts.push_back({s, 2, whole.spans - 2});
+    else parts.push_back(whole);
+  }
+  scene.grooms[0].only = std::make_shared<const std::vector<StrandPart>>(parts);
+  return scene;
+}
+
+// A strand in two parts is the strand, in every basis: only the caps of bands where it is cut differ, by less than their width.
+TEST(Only, PartsOfStrandsMakeThem) {
+  TraceSettings settings;
+  settings.samples = 1;
+  for (const CurveBasis basis : {CurveBasis::kLinear, CurveBasis::kCatmullRom, CurveBasis::kBSpline, CurveBasis::kBezier}) {
+    Scene cut = in_parts(basis, true), whole = in_parts(basis, false), lacking = whole;
+    std::vector<StrandPart> fewer = *cut.grooms[0].only;
+    std::erase_if(fewer, [](const StrandPart& part) { return part.first_span == 0; });
+    lacking.grooms[0].only = std::make_shared<const std::vector<StrandPart>>(fewer);
+    EXPECT_EQ(trace(cut, settings).linear.pixels, trace(whole, settings).linear.pixels);
+    cut.settings.background = whole.settings.background = lacking.settings.background = {};
+    const double light = light_of(render(whole).linear);
+    EXPECT_NEAR(light_of(render(cut).linear) / light, 1, 0.003) << static_cast<int>(basis);
+    EXPECT_LT(light_of(render(lacking).linear) / light, 0.99) << static_cast<int>(basis);
+    for (Scene* scene : {&cut, &whole}) scene->settings.view = View::kU;
+    const Image a = render(cut).linear, b = render(whole).linear;
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) differ += std::fabs(a.pixels[i] - b.pixels[i]) > 1e-4f;
+    EXPECT_LT(differ, a.pixels.size() / 50) << static_cast<int>(basis);
+  }
+}
+
 // Maps of large grooms are drawn from one strand in `stride`.
 TEST(Only, MapsOfLightPickFromThoseThatAreDrawn) {
   const Scene scene = every_third(true);
   const StrandLines lines(scene.grooms[0]);
-  EXPECT_EQ(lines.strand_count(), scene.grooms[0].only->size());
+  EXPECT_EQ(lines.part_count(), scene.grooms[0].only->size());
   for (const std::size_t stride : {1u, 5u}) {
-    const std::vector<std::uint32_t> picked = lines.pick(stride, view_from({0, 0, 2}));
+    const std::vector<StrandPart> picked = lines.pick(stride, view_from({0, 0, 2}));
     EXPECT_EQ(picked.size(), (scene.grooms[0].only->size() + stride - 1) / stride);
-    for (const std::uint32_t s : picked) EXPECT_EQ(s % 3, 1u);
+    for (const StrandPart& part : picked) EXPECT_EQ(part.strand % 3, 1u);
   }
 }
 

@@ -81,51 +81,47 @@ std::size_t opaque_texels(float coverage) {
 /// Draws cards as an eye sees them.
 class CardPen {
  public:
-  CardPen(const HairCards& cards, const StrandSet& set, const LodPlace& place, const LevelBounds& bounds)
-      : cards_(cards), set_(set), place_(place), bounds_(bounds), to_eye_(place) {}
+  CardPen(const HairCards& cards, const StrandSet& set, const LodPlace& place)
+      : cards_(cards), set_(set), lod_(place.lod), eye_(place) {}
 
-  void operator()(std::size_t prism, const LodRun& run, Pieces& out) const {
-    const LevelBounds::Range hairs = bounds_.hairs(run.level, prism);
+  void operator()(std::uint32_t h, std::size_t level, const LodRun& run, Pieces& out) const {
     const std::size_t first = run.first * HairCards::kRowsPerSegment, last = run.last * HairCards::kRowsPerSegment;
-    for (std::uint32_t h = hairs.first; h < hairs.last; ++h)
-      for (std::size_t column = 0; column < kColumns; ++column)
-        for (std::size_t from = first, to; from < last; from = to) {
-          const auto opaque = [&](std::size_t row) { return cards_.row(h, row) >> column & 1; };
-          for (to = from + 1; to < last && opaque(to) == opaque(from);) ++to;
-          if (opaque(from)) add_strip(h, column, from, to, run.level, out);
-        }
+    for (std::size_t column = 0; column < kColumns; ++column)
+      for (std::size_t from = first, to; from < last; from = to) {
+        const auto opaque = [&](std::size_t row) { return cards_.row(h, row) >> column & 1; };
+        for (to = from + 1; to < last && opaque(to) == opaque(from);) ++to;
+        if (opaque(from)) add_strip(h, column, from, to, level, out);
+      }
   }
 
  private:
   /// Texels of a column, rows `from` to `to` − 1.
   void add_strip(std::uint32_t h, std::size_t column, std::size_t from, std::size_t to, std::size_t level, Pieces& out) const {
-    const LodHierarchy& lod = place_.lod;
     int opaque = 0;
     for (std::size_t row = 0; row < kRows; ++row) opaque += std::popcount(cards_.row(h, row));
-    const float fibers = static_cast<float>(lod.hairs[h].fibers) * kRows / static_cast<float>(opaque),
+    const float fibers = static_cast<float>(lod_.hairs[h].fibers) * kRows / static_cast<float>(opaque),
                 across = (2 * static_cast<float>(column) + 1) / kColumns - 1;
     for (std::size_t row = from; row <= to; ++row) {
       const float place = row_place(row);
-      const CardCut cut = cut_card(lod, h, place);
+      const CardCut cut = cut_card(lod_, h, place);
       const Vec3 point = cut.center + cut.major * across, half = cut.major / kColumns;
       const auto k = static_cast<std::size_t>(std::lround(place));
       out.hairs.points.push_back(point);
-      out.hairs.widths.push_back(section_extent(half, Vec3(), hair_direction(lod, h, k), to_eye_(point)).width);
-      out.sections.major.push_back(half), out.sections.minor.push_back(between(&lod.minor[std::size_t{h} * kPoints], place));
+      out.hairs.widths.push_back(section_extent(half, Vec3(), hair_direction(lod_, h, k), eye_.from(point)).width);
+      out.sections.major.push_back(half), out.sections.minor.push_back(between(&lod_.minor[std::size_t{h} * kPoints], place));
       out.sections.fibers.push_back(fibers);
-      out.sections.diameters.push_back(2 * between(&lod.radii[std::size_t{h} * kPoints], place));
+      out.sections.diameters.push_back(2 * between(&lod_.radii[std::size_t{h} * kPoints], place));
       out.sections.spreads.push_back(0);
     }
     out.sections.levels.push_back(static_cast<std::uint8_t>(level));
-    append_attributes(lod, h, set_, out.hairs);
+    append_attributes(lod_, h, set_, out.hairs);
     end_strand(out.hairs);
   }
 
   const HairCards& cards_;
   const StrandSet& set_;
-  const LodPlace& place_;
-  const LevelBounds& bounds_;
-  const ToEye to_eye_;
+  const LodHierarchy& lod_;
+  const LodEye eye_;
 };
 
 }  // namespace
@@ -164,18 +160,15 @@ void HairCards::paint(const StrandSet& strands, const LodHierarchy& lod, std::si
     rows_[hair * kRows + order[i] / kColumns] |= static_cast<std::uint8_t>(1u << order[i] % kColumns);
 }
 
-LodLevels HairCards::choose(const LodPlace& place, const LevelBounds& bounds, float pixels, int level,
-                            const LodLevels& before) {
-  const std::size_t most = std::min(kLevels, place.lod.levels());
-  if (level >= 0) return one_level(place.lod, std::min(static_cast<std::size_t>(level), most - 1));
-  LodLevels levels = choose_levels(place, bounds, pixels * kColumns, before);
-  for (std::uint8_t& l : levels)
-    if (l >= most) l = static_cast<std::uint8_t>(place.lod.levels());
-  return levels;
+LodCut HairCards::choose(const LodPlace& place, const PrismHairs& prisms, float pixels, int level, const LodCut& before) {
+  const LodHierarchy& lod = place.lod;
+  const std::size_t most = std::min(kLevels, lod.levels());
+  if (level >= 0) return one_level(lod, std::min(static_cast<std::size_t>(level), most - 1));
+  LodCut cut = choose_levels(place, prisms, pixels * kColumns, before);
+  for (std::size_t h = lod.level_offsets[most]; h < cut.size(); ++h) cut[h] = cut[lod.hairs[h].parent];
+  return cut;
 }
 
-DrawClusters HairCards::pen(const StrandSet& strands, const LodPlace& place, const LevelBounds& bounds) const {
-  return CardPen(*this, strands, place, bounds);
-}
+DrawCluster HairCards::pen(const StrandSet& strands, const LodPlace& place) const { return CardPen(*this, strands, place); }
 
 }  // namespace pelage

@@ -26,12 +26,12 @@ class HairCards {
   /// flat strip shows 2/π of its width. Strands beside the card stand at its edge. O(strands), in parallel; the same for any number of threads.
   HairCards(const StrandSet& strands, const LodHierarchy& lod);
 
-  /// The levels of cards: the coarsest whose texels are no wider than `pixels` on the screen, else as choose_levels(); or `level` everywhere,
+  /// The levels of cards: of each the coarsest whose texels are no wider than `pixels` on the screen, else as choose_levels(); or `level` everywhere,
   /// where it is not negative.
-  static LodLevels choose(const LodPlace& place, const LevelBounds& bounds, float pixels, int level, const LodLevels& before);
+  static LodCut choose(const LodPlace& place, const PrismHairs& prisms, float pixels, int level, const LodCut& before);
 
-  /// Draws runs of opaque texels as flat strips, lines that are as wide as `place` sees the texel. All arguments must outlive what is returned.
-  DrawClusters pen(const StrandSet& strands, const LodPlace& place, const LevelBounds& bounds) const;
+  /// Draws runs of opaque texels as flat strips, lines that are as wide as `place` sees the texel. Refers to its arguments.
+  DrawCluster pen(const StrandSet& strands, const LodPlace& place) const;
 
   /// Texels of a row of the card of a hair; bit c: column c, from −major to +major, is opaque.
   std::uint8_t row(std::size_t hair, std::size_t row) const { return rows_[hair * kRows + row]; }

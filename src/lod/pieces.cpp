@@ -1,5 +1,7 @@
 #include "lod/pieces.h"
 
+#include "frame/strand_part.h"
+
 namespace pelage {
 namespace {
 
@@ -47,29 +49,22 @@ void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& 
   to.strand_id.push_back(from.strand_id.empty() ? one : from.strand_id[one]);
 }
 
-void append_strand(const StrandSet& set, std::size_t strand, float from, float to, float widen, StrandSet& pieces,
-                   const StrandSet* measured) {
-  const std::vector<Vec3>& polygon = (measured ? *measured : set).points;
-  const std::size_t begin = set.offsets[strand], end = set.offsets[strand + 1], count = end - begin;
-  const std::size_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
-  std::vector<float> length(count);
-  for (std::size_t i = 1; i < count; ++i)
-    length[i] = length[i - 1] + pelage::length(polygon[begin + i] - polygon[begin + i - 1]);
-  std::size_t first = 0, last = count - 1;
-  while (first + stride < last && length[first + stride] <= from * length.back()) first += stride;
-  while (last >= first + 2 * stride && length[last - stride] >= to * length.back()) last -= stride;
-  for (std::size_t i = begin + first; i <= begin + last; ++i) {
+void append_strand(const StrandSet& set, const StrandPart& part, float widen, StrandSet& pieces) {
+  const std::uint32_t begin = first_point(set, part), end = begin + part.spans * points_per_span(set.basis) + 1;
+  for (std::uint32_t i = begin; i < end; ++i) {
     pieces.points.push_back(set.points[i]), pieces.widths.push_back(set.width(i) * widen);
     if (set.colors.size() == set.point_count()) pieces.colors.push_back(set.colors[i]);
     if (!set.transparency.empty()) pieces.transparency.push_back(set.transparency[i]);
   }
-  append_attributes(set, strand, pieces);
+  append_attributes(set, part.strand, pieces);
   end_strand(pieces);
 }
 
-void append(const Pieces& from, Pieces& to) {
-  append(from.whole, to.whole), append(from.sections, to.sections);
-  append(from.strands, to.strands), append(from.hairs, to.hairs);
+Pieces join(const std::vector<Pieces>& parts) {
+  Pieces all;
+  all.hairs.offsets = {0};
+  for (const Pieces& part : parts) append(part.hairs, all.hairs), append(part.sections, all.sections);
+  return all;
 }
 
 }  // namespace pelage

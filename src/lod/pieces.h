@@ -1,9 +1,10 @@
-// What a groom with levels of detail is drawn as: strands, pieces of strands, and pieces of what stands for clusters.
+// Curves that stand for clusters of strands, as they are made.
 #pragma once
 
 #include <pelage/lod.h>
 #include <pelage/scene.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -11,25 +12,30 @@
 
 namespace pelage {
 
-/// Segments first … last − 1 of the hairs of a prism, all of one level.
+/// Segments first … last − 1 of a hair.
 struct LodRun {
-  std::size_t first, last, level;
+  std::size_t first, last;
 };
 
-/// What some prisms are drawn as.
+/// Calls body(run) for every run of set bits of `segments`.
+template <class Body>
+void for_each_run(std::uint32_t segments, const Body& body) {
+  for (std::size_t first = 0, last; segments >> first != 0; first = last) {
+    first += static_cast<std::size_t>(std::countr_zero(segments >> first));
+    last = first + static_cast<std::size_t>(std::countr_one(segments >> first));
+    body(LodRun{first, last});
+  }
+}
+
+/// What stands for clusters of strands.
 struct Pieces {
-  std::vector<std::uint32_t> whole;  ///< strands, as they stand in the groom
-  StrandSet strands;                 ///< parts of strands
-  StrandSet hairs;                   ///< what stands for clusters
-  ThickSections sections;            ///< of `hairs`
+  StrandSet hairs;
+  ThickSections sections;  ///< of `hairs`
 };
 
-/// Appends to Pieces::hairs and Pieces::sections what stands for the clusters of a prism along a run of a level of thick hairs. Called from
-/// several threads at once, each with pieces of its own.
-using DrawClusters = std::function<void(std::size_t prism, const LodRun& run, Pieces& out)>;
-
-/// Share of a hair's length that control point k lies at.
-inline float share_at(std::size_t k) { return static_cast<float>(k) / static_cast<float>(LodHierarchy::kPoints - 1); }
+/// Appends what stands for the cluster of a hair along a run of its segments. Called from several threads at once, each with pieces of
+/// its own. `level` is the hair's.
+using DrawCluster = std::function<void(std::uint32_t hair, std::size_t level, const LodRun& run, Pieces& out)>;
 
 /// Knot k of the B-spline along the center of a hair.
 Vec3 hair_knot(const LodHierarchy& lod, std::size_t hair, std::size_t k);
@@ -41,12 +47,10 @@ void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& 
 /// Closes the strand whose points were appended last.
 void end_strand(StrandSet& set);
 
-/// The part of a strand at shares `from` to `to` of the length of its control polygon, and what it takes to whole spans, `widen` times as
-/// wide as it is. The lengths are those in `measured`, the strands in another pose, where it is given: so two poses are cut alike.
-void append_strand(const StrandSet& set, std::size_t strand, float from, float to, float widen, StrandSet& pieces,
-                   const StrandSet* measured = nullptr);
+/// A part of a strand, `widen` times as wide as it is.
+void append_strand(const StrandSet& set, const StrandPart& part, float widen, StrandSet& pieces);
 
-/// `from` after what stands in `to`.
-void append(const Pieces& from, Pieces& to);
+/// All of `parts`, one after the other.
+Pieces join(const std::vector<Pieces>& parts);
 
 }  // namespace pelage

@@ -7,7 +7,7 @@
 #include "core/bounds.h"
 #include "core/check.h"
 #include "frame/camera_view.h"
-#include "frame/curve_basis.h"
+#include "frame/strand_part.h"
 #include "lod/draw_levels.h"
 
 namespace pelage {
@@ -17,12 +17,8 @@ constexpr int kSmallestMap = 64;
 constexpr float kTexelsPerPixel = 2;
 
 std::uint64_t spans_of(const GroomInstance& groom) {
-  const StrandSet& set = *groom.strands;
   std::uint64_t spans = 0;
-  for (std::size_t i = 0; i < drawn_strands(groom); ++i) {
-    const std::size_t s = groom.only ? (*groom.only)[i] : i;
-    spans += span_count(set.basis, set.offsets[s + 1] - set.offsets[s]);
-  }
+  for (std::size_t i = 0; i < drawn_parts(groom); ++i) spans += drawn_part(groom, i).spans;
   return spans;
 }
 
@@ -69,7 +65,7 @@ ThickHairs::ThickHairs(const Scene& scene) {
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
     const GroomInstance& groom = scene.grooms[g];
     if (!groom.lod || !groom.strands) continue;
-    grooms_.push_back({g, LevelBounds(*groom.lod), {}, {}, {}});
+    grooms_.push_back({g, PrismHairs(*groom.lod), StrandCuts(*groom.strands), {}, {}, {}});
     if (shape == LodShape::kStrands) grooms_.back().thickened.emplace(*groom.lod);
     if (shape == LodShape::kCards) grooms_.back().cards.emplace(*groom.strands, *groom.lod);
   }
@@ -78,30 +74,30 @@ ThickHairs::ThickHairs(const Scene& scene) {
 std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const ThickHairSettings& settings,
                                             const LodPlace& place, Groom& groom) {
   const StrandSet& set = *instance.strands;
-  if (groom.cards) groom.levels = HairCards::choose(place, groom.bounds, settings.pixels, settings.level, groom.levels);
-  else if (settings.level >= 0) groom.levels = one_level(place.lod, static_cast<std::size_t>(settings.level));
-  else groom.levels = choose_levels(place, groom.bounds, settings.pixels, groom.levels);
-  if (groom.cards)
-    return draw_levels(instance, place.lod, groom.levels, CurveBasis::kLinear, groom.cards->pen(set, place, groom.bounds));
+  const std::size_t finest = place.lod.levels() - 1;
+  if (groom.cards) groom.cut = HairCards::choose(place, groom.prisms, settings.pixels, settings.level, groom.cut);
+  else if (settings.level >= 0) groom.cut = one_level(place.lod, std::min(static_cast<std::size_t>(settings.level), finest));
+  else groom.cut = choose_levels(place, groom.prisms, settings.pixels, groom.cut);
+  if (groom.cards) return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kLinear, groom.cards->pen(set, place));
   if (groom.thickened)
-    return draw_levels(instance, place.lod, groom.levels, set.basis, groom.thickened->pen(set, place.lod, groom.bounds));
-  return draw_levels(instance, place, groom.bounds, groom.levels);
+    return draw_levels(instance, groom.cut, groom.cuts, set.basis, groom.thickened->pen(set, place.lod, groom.cuts));
+  return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kCatmullRom, thick_hair_pen(set, place));
 }
 
 void ThickHairs::move(const Scene& scene) {
   for (Groom& groom : grooms_) {
     const GroomInstance& instance = scene.grooms[groom.number];
-    groom.bounds = LevelBounds(*instance.lod);
+    groom.prisms = PrismHairs(*instance.lod);
     if (groom.thickened) groom.thickened.emplace(*instance.lod);
     if (groom.cards) groom.cards.emplace(*instance.strands, *instance.lod);
   }
 }
 
-std::optional<Scene> ThickHairs::drawn_alike(const Scene& now, const Scene& scene, const CameraView& view) const {
+std::optional<Scene> ThickHairs::drawn_alike(const Scene& scene, const CameraView& view) const {
   if (std::any_of(grooms_.begin(), grooms_.end(), [](const Groom& g) { return g.cards || g.thickened; })) return std::nullopt;
   return draw_grooms(scene, grooms_, view, [&](const Groom& groom, const LodPlace& place) {
     const GroomInstance& instance = scene.grooms[groom.number];
-    return draw_levels(instance, place, groom.bounds, groom.levels, now.grooms[groom.number].strands.get());
+    return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kCatmullRom, thick_hair_pen(*instance.strands, place));
   });
 }
 
@@ -110,10 +106,10 @@ Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
   changed_ = false, segments_ = 0;
   float pixels = grooms_.size() == scene.grooms.size() ? 0 : INFINITY;  // grooms without levels of detail take maps as they are
   Scene drawn = draw_grooms(scene, grooms_, view, [&](Groom& groom, const LodPlace& place) {
-    pixels = std::max(pixels, pixels_wide(groom.bounds.box(), view, place.to_camera));
-    const LodLevels before = groom.levels;
+    pixels = std::max(pixels, pixels_wide(groom.prisms.box(), view, place.to_camera));
+    const LodCut before = groom.cut;
     std::vector<GroomInstance> pieces = draw(scene.grooms[groom.number], scene.settings.thick_hairs, place, groom);
-    changed_ = changed_ || before != groom.levels;
+    changed_ = changed_ || before != groom.cut;
     return pieces;
   });
   drawn.settings.opacity_map_size = map_size(pixels, scene.settings.opacity_map_size);

@@ -30,9 +30,9 @@ class ThickHairs {
 
   /// `scene` in another pose of its grooms, to choose levels for from now on.
   void move(const Scene& scene);
-  /// `scene`, another pose of `now`, of which drawn() was called last, as the same strands and pieces of thick hairs. None where something else than
+  /// `scene`, another pose of that of which drawn() was called last, as the same strands and pieces of thick hairs. None where something else than
   /// thick hairs stands for clusters.
-  std::optional<Scene> drawn_alike(const Scene& now, const Scene& scene, const CameraView& view) const;
+  std::optional<Scene> drawn_alike(const Scene& scene, const CameraView& view) const;
 
   /// Whether the last call chose other levels than the one before, or another size for the maps of lights.
   bool changed() const { return changed_; }
@@ -41,8 +41,9 @@ class ThickHairs {
  private:
   struct Groom {
     std::size_t number;  // in the scene
-    LevelBounds bounds;
-    LodLevels levels;
+    PrismHairs prisms;
+    StrandCuts cuts;
+    LodCut cut;
     std::optional<ThickenedStrands> thickened;  // where they stand for clusters
     std::optional<HairCards> cards;             // where they do
   };

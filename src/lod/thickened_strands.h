@@ -5,28 +5,26 @@
 #include <cstdint>
 #include <vector>
 
-#include "lod/choose_levels.h"
 #include "lod/pieces.h"
+#include "lod/strand_cuts.h"
 
 namespace pelage {
 
-/// Which strands of every prism are kept.
+/// Which strand stands for every cluster.
 class ThickenedStrands {
  public:
-  /// O(strands · log strands). Refers to nothing.
+  /// O(strands · levels). Refers to nothing.
   explicit ThickenedStrands(const LodHierarchy& lod);
 
-  /// Strands of a prism in a random order that never changes: fewer of them are always a part of more.
-  const std::uint32_t* strands(const LodHierarchy& lod, std::size_t prism) const {
-    return &shuffled_[lod.hairs[prism].first_strand];
-  }
+  /// A random strand of the cluster of a hair, which one of its children keeps too: strands of coarse levels are always a part of those of finer ones.
+  std::uint32_t strand(std::size_t hair) const { return strands_[hair]; }
 
-  /// Draws as many strands of `set` as a level has thick hairs in the prism, m of n, n/m times as wide: in sum their widths are those of
-  /// all. Their sections are their share of the prism's, 1/m of its area. All arguments must outlive what is returned, and so must this.
-  DrawClusters pen(const StrandSet& set, const LodHierarchy& lod, const LevelBounds& bounds) const;
+  /// Draws that strand of `set`, as many times as wide as the hair has fibers: in sum widths are those of all strands. Its sections
+  /// are those of the hair. All arguments must outlive what is returned, and so must this.
+  DrawCluster pen(const StrandSet& set, const LodHierarchy& lod, const StrandCuts& cuts) const;
 
  private:
-  std::vector<std::uint32_t> shuffled_;  // LodHierarchy::order, each prism's strands among themselves
+  std::vector<std::uint32_t> strands_;  // [hairs]
 };
 
 }  // namespace pelage

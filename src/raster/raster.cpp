@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/shared_progress.h"
 #include "frame/draw_order.h"
+#include "frame/strand_part.h"
 #include "raster/analytic.h"
 #include "raster/band_area.h"
 #include "raster/band_walk.h"
@@ -84,7 +85,7 @@ std::uint64_t stream_strands(const Scene& scene, const CameraView& view, const S
     const std::vector<std::uint32_t> order = draw_order(scene.grooms[g], view);
     AssembleJob job = make_assemble_job(scene, view, numbering, g);
     job.order = order;
-    parallel_for(drawn_strands(scene.grooms[g]), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
+    parallel_for(drawn_parts(scene.grooms[g]), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
       Worker& worker = workers.local();
       std::uint64_t points = 0;
       for (std::size_t s = begin; s < end;) {
@@ -112,7 +113,7 @@ std::uint64_t raster_strands(const Scene& scene, const CameraView& view, const S
   const AnalyticCells cells = layers.analytic ? choose_cells(scene, view) : AnalyticCells();
   const bool in_cells = cells.per_pixel > 1;
   std::uint64_t strands = 0;
-  for (const GroomInstance& groom : scene.grooms) strands += drawn_strands(groom);
+  for (const GroomInstance& groom : scene.grooms) strands += drawn_parts(groom);
   SharedProgress shared(progress, "raster", std::max<std::uint64_t>(1, in_cells ? 2 * strands : strands));
   RasterLayers in_pixels = layers;
   in_pixels.analytic = layers.analytic && !in_cells;

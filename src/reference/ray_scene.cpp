@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "frame/camera_view.h"
 #include "frame/curve_basis.h"
+#include "frame/strand_part.h"
 #include "kernel/scalar.h"
 
 namespace pelage {
@@ -142,14 +143,14 @@ RayScene::Curves RayScene::make_curves(const GroomInstance& groom) {
   std::vector<Vec4> points;  // of all strands, phantoms included
   std::vector<Span> spans;
   std::vector<std::uint32_t> first_points;
-  for (std::size_t i = 0; i < drawn_strands(groom); ++i) {
-    const std::uint32_t s = groom.only ? (*groom.only)[i] : static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < drawn_parts(groom); ++i) {
+    const StrandPart part = drawn_part(groom, i);
     const auto first = static_cast<std::uint32_t>(points.size());
-    add_world_points(groom, s, points);
-    const std::uint32_t count = span_count(set.basis, set.offsets[s + 1] - set.offsets[s]);
-    for (std::uint32_t k = 0; k < count; ++k) {
-      spans.push_back({s, k, count});
-      first_points.push_back(first + (set.basis == CurveBasis::kBezier ? 3 * k : k));
+    add_world_points(groom, part.strand, points);
+    const std::uint32_t count = whole_strand(set, part.strand).spans;
+    for (std::uint32_t k = part.first_span; k < part.first_span + part.spans; ++k) {
+      spans.push_back({part.strand, k, count});
+      first_points.push_back(first + k * points_per_span(set.basis));
     }
   }
   c.points.resize(points.size()), c.first_points.resize(spans.size()), c.spans.reserve(spans.size());

@@ -1,0 +1,93 @@
+#include "lod/hair_widths.h"
+
+#include "frame/camera_view.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lod/hair_widths.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <cmath>
+
+#include "kernel/wide-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelage {
+namespace HWY_NAMESPACE {
+namespace {
+
+using wide::Float;
+using wide::Mask;
+
+constexpr std::size_t kPoints = LodHierarchy::kPoints;
+
+wide::Vec3 load_vectors(const Vec3* v) {
+  wide::Vec3 r;
+  wide::hn::LoadInterleaved3(wide::kFloatTag, &v->x, r.x.v, r.y.v, r.z.v);
+  return r;
+}
+
+/// The centers of a hair, its ends twice: k + 1 is control point k.
+struct Centers {
+  alignas(64) float x[kPoints + 2], y[kPoints + 2], z[kPoints + 2];
+
+  explicit Centers(const Vec3* c) {
+    for (std::size_t k = 0; k < kPoints; k += static_cast<std::size_t>(wide::lanes())) {
+      const wide::Vec3 v = load_vectors(c + k);
+      store(v.x, x + k + 1), store(v.y, y + k + 1), store(v.z, z + k + 1);
+    }
+    for (float* v : {x, y, z}) v[0] = v[1], v[kPoints + 1] = v[kPoints];
+  }
+  wide::Vec3 at(std::size_t i) const { return {wide::load(x + i), wide::load(y + i), wide::load(z + i)}; }
+};
+
+/// section_extent().width
+Float shadow(wide::Vec3 major, wide::Vec3 minor, wide::Vec3 along, wide::Vec3 to_eye) {
+  const wide::Vec3 side = cross(along, to_eye);
+  const Float sine2 = dot(side, side), limit2 = Float(1e-12f) * dot(along, along) * dot(to_eye, to_eye);
+  const Float a = dot(major, side), b = dot(minor, side);
+  const Mask seen_from_its_end = !(sine2 > limit2);
+  return select(seen_from_its_end, Float(2.f) * sqrt(dot(major, major)), Float(2.f) * sqrt((a * a + b * b) / sine2));
+}
+
+void Widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair, HairWidths& out) {
+  const std::size_t first = std::size_t{hair} * kPoints;
+  const Centers centers(&lod.centers[first]);
+  for (std::size_t k = 0; k < kPoints; k += static_cast<std::size_t>(wide::lanes())) {
+    const wide::Vec3 center = centers.at(k + 1),
+                     to_eye = eye.perspective ? wide::Vec3(eye.place) - center : wide::Vec3(eye.place);
+    const Float width = shadow(load_vectors(&lod.major[first + k]), load_vectors(&lod.minor[first + k]),
+                               centers.at(k + 2) - centers.at(k), to_eye);
+    const Float depth = dot(wide::Vec3(eye.forward), center) + Float(eye.depth);
+    const Float pixels = width * (eye.perspective ? Float(eye.pixels) / depth : Float(eye.pixels));
+    store(width, &out.metres[k]);
+    store(select(depth >= Float(eye.near_plane), pixels, Float(INFINITY)), &out.pixels[k]);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace pelage
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pelage {
+
+HWY_EXPORT(Widths);
+
+LodEye::LodEye(const LodPlace& at)
+    : perspective(at.view.perspective), near_plane(at.view.near_plane), pixels(at.view.focal * similarity_scale(at.to_camera)) {
+  const Affine to_groom = inverse_of_similarity(at.to_camera);
+  place = perspective ? transform_point(to_groom, Vec3()) : transform_vector(to_groom, {0, 0, -1});
+  const auto& z = at.to_camera.m[2];
+  forward = {z[0], z[1], z[2]}, depth = z[3];
+}
+
+HairWidths hair_widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair) {
+  HairWidths widths;
+  HWY_DYNAMIC_DISPATCH(Widths)(lod, eye, hair, widths);
+  return widths;
+}
+
+}  // namespace pelage
+#endif
