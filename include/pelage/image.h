@@ -14,9 +14,7 @@ struct Image {
   std::vector<float> pixels;          ///< [height·width·channels.size()]
 
   Image() = default;
-  Image(int w, int h, std::vector<std::string> names)
-      : width(w), height(h), channels(std::move(names)),
-        pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * channels.size()) {}
+  Image(int w, int h, std::vector<std::string> names);  ///< all 0
   std::size_t channel_count() const { return channels.size(); }
   float* at(int x, int y) { return pixels.data() + index(x, y); }
   const float* at(int x, int y) const { return pixels.data() + index(x, y); }

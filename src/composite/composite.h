@@ -23,10 +23,13 @@ struct FrameLayers {
   const Backdrop& backdrop;
 };
 
-/// Writes the picture of one band: its row y becomes row `first_row` + y of `linear` (R, G, B, A; premultiplied;
+/// The backdrop alone, settings.width × settings.height pixels of it: R, G, B, A; premultiplied; exposure applied.
+Image backdrop_picture(const Backdrop& backdrop, const RenderSettings& settings);
+
+/// Writes the picture of one band: its pixel (0, 0) becomes (x, y) of `linear` (R, G, B, A; premultiplied;
 /// exposure applied). AlphaSource::kSamples averages the samples; kAnalytic lays the mean color of the visible strand
 /// samples over the opaque scene by the exact area of GBuffer::coverage. O(samples), rows in parallel.
-void resolve(const FrameLayers& layers, const RenderSettings& settings, int first_row, Image& linear);
+void resolve(const FrameLayers& layers, const RenderSettings& settings, int x, int y, Image& linear);
 
 /// Hair that is a picture of its own over the opaque scene, whose samples are averaged, over the backdrop; exposure in stops applied.
 /// opaque: of all of the picture, or empty. O(pixels), rows in parallel.

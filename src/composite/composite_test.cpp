@@ -45,7 +45,7 @@ struct OnePixel {
     backdrop.color = kSky;
   }
   Vec4 pixel() {
-    resolve({gbuffer, radiance, edges, opaque, backdrop}, settings, 0, linear);
+    resolve({gbuffer, radiance, edges, opaque, backdrop}, settings, 0, 0, linear);
     const float* p = linear.at(0, 0);
     return {p[0], p[1], p[2], p[3]};
   }
@@ -113,13 +113,25 @@ TEST(Resolve, AnEmptyOpaqueLayerIsAllBackdrop) {
   expect_near(p.pixel(), (kHair + kSky) * 0.5f, 1);
 }
 
-TEST(Resolve, BandsGoToTheirRows) {
+TEST(Resolve, BandsGoToTheirPlace) {
   OnePixel p;
-  p.linear = Image(1, 3, {"R", "G", "B", "A"});
-  resolve({p.gbuffer, p.radiance, p.edges, p.opaque, p.backdrop}, p.settings, 2, p.linear);
-  EXPECT_EQ(p.linear.at(0, 0)[3], 0);
-  EXPECT_EQ(p.linear.at(0, 1)[3], 0);
-  EXPECT_EQ(p.linear.at(0, 2)[3], 1);
+  p.linear = Image(2, 3, {"R", "G", "B", "A"});
+  resolve({p.gbuffer, p.radiance, p.edges, p.opaque, p.backdrop}, p.settings, 1, 2, p.linear);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(p.linear.at(i % 2, i / 2)[3], i == 5) << i;
+}
+
+// A band beside which nothing is: its empty pixels have the same bits as those around it.
+TEST(Resolve, EmptyPixelsAreTheBackdrop) {
+  OnePixel p;
+  p.opaque = {};
+  p.radiance.index.fill(Radiance::kNone);
+  p.backdrop.color = {0.1f, 0.7f, 1.3f};
+  p.settings.width = p.settings.height = 1, p.settings.exposure = 0.3f;
+  for (const AlphaSource alpha : {AlphaSource::kSamples, AlphaSource::kAnalytic}) {
+    p.settings.alpha = alpha;
+    p.pixel();
+    EXPECT_EQ(p.linear.pixels, backdrop_picture(p.backdrop, p.settings).pixels);
+  }
 }
 
 Image noise(int width, int height) {

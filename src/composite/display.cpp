@@ -41,8 +41,13 @@ void encode_run(const float* in, std::size_t count, float* out) {
     const Pixels q = encode<kAces>(p);
     hn::StoreInterleaved4(q.color.x.v, q.color.y.v, q.color.z.v, q.alpha.v, kFloatTag, to);
   };
+  const std::size_t floats = 4 * step;
   std::size_t i = 0;
-  for (; i + step <= count; i += step) encode_lanes(in + 4 * i, out + 4 * i);
+  for (; i + step <= count; i += step) {
+    const float* from = in + 4 * i;  // a backdrop of one color is encoded once
+    if (i > 0 && std::equal(from, from + floats, from - floats)) std::copy(out + 4 * i - floats, out + 4 * i, out + 4 * i);
+    else encode_lanes(from, out + 4 * i);
+  }
   if (i == count) return;
   float from[4 * HWY_MAX_BYTES / sizeof(float)] = {}, to[4 * HWY_MAX_BYTES / sizeof(float)];
   std::copy(in + 4 * i, in + 4 * count, from);

@@ -14,17 +14,27 @@
 
 namespace pelage {
 
+/// Asks for huge pages where [data, data + bytes) holds whole ones, which saves page faults on first writes.
+inline void prefer_huge_pages(void* data, std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  constexpr std::uintptr_t kHugePage = std::uintptr_t{2} << 20;
+  const auto begin = reinterpret_cast<std::uintptr_t>(data), first = (begin + kHugePage - 1) / kHugePage * kHugePage,
+             last = (begin + bytes) / kHugePage * kHugePage;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#else
+  (void)data, (void)bytes;
+#endif
+}
+
 namespace detail {
 /// Aligned for SIMD; large arrays lie in huge pages where the system has them, which saves page faults on first writes and
 /// misses of the address translation ever after. Freed by std::free(); null when there is no memory.
 inline void* allocate(std::size_t bytes) {
   constexpr std::size_t kHugePage = std::size_t{2} << 20;
-  const std::size_t unit = bytes >= 2 * kHugePage ? kHugePage : 64;
+  const std::size_t unit = bytes >= kHugePage ? kHugePage : 64;
   const std::size_t rounded = (bytes + unit - 1) / unit * unit;
   void* const data = std::aligned_alloc(unit, rounded);
-#ifdef MADV_HUGEPAGE
-  if (data && unit == kHugePage) madvise(data, rounded, MADV_HUGEPAGE);
-#endif
+  if (data) prefer_huge_pages(data, rounded);
   return data;
 }
 }  // namespace detail

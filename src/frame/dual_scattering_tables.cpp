@@ -1,8 +1,14 @@
 #include "frame/dual_scattering_tables.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
+#include <mutex>
 #include <numbers>
+#include <utility>
+
+#include "core/parallel.h"
 
 namespace pelage {
 namespace {
@@ -75,23 +81,53 @@ double sum_orders(const std::array<Offset, kOffsets>& all, const HairMaterial& m
   return forward;
 }
 
+ForwardAttenuationTable make_forward_attenuation_table(const HairMaterial& material) {
+  const auto rows = static_cast<std::size_t>(kernel::kScatterTableRows),
+             columns = static_cast<std::size_t>(kernel::kScatterTableColumns);
+  ForwardAttenuationTable table;
+  table.a_f.resize(rows * columns);
+  parallel_for(rows, 1, [&](std::size_t row, std::size_t) {
+    const auto all = offsets(material, static_cast<double>(row) / (rows - 1));
+    for (std::size_t column = 0; column < columns; ++column) {
+      // e^(-sigma_a/2) = 0 is sigma_a = infinity: 60 leaves nothing that a float could tell.
+      const double x = static_cast<double>(column) / (columns - 1);
+      table.a_f[row * columns + column] = static_cast<float>(sum_orders(all, material, column == 0 ? 60 : -2 * std::log(x)));
+    }
+  });
+  return table;
+}
+
+/// What the table depends on.
+struct TableKey {
+  bool zhu;
+  float eta, beta_azimuthal, specular_gain;
+  bool operator==(const TableKey&) const = default;
+};
+
+TableKey table_key(const HairMaterial& m) {
+  return {m.model == HairMaterial::Model::kZhu, m.eta, m.beta_azimuthal, m.specular_gain};
+}
+
 }  // namespace
 
 double forward_attenuation(const HairMaterial& material, double cos_theta, double sigma_a) {
   return sum_orders(offsets(material, cos_theta), material, sigma_a);
 }
 
-ForwardAttenuationTable make_forward_attenuation_table(const HairMaterial& material) {
-  const int rows = static_cast<int>(kernel::kScatterTableRows), columns = static_cast<int>(kernel::kScatterTableColumns);
-  ForwardAttenuationTable table;
-  for (int row = 0; row < rows; ++row) {
-    const auto all = offsets(material, static_cast<double>(row) / (rows - 1));
-    for (int column = 0; column < columns; ++column) {
-      // e^(-sigma_a/2) = 0 is sigma_a = infinity: 60 leaves nothing that a float could tell.
-      const double x = static_cast<double>(column) / (columns - 1);
-      table.a_f.push_back(static_cast<float>(sum_orders(all, material, column == 0 ? 60 : -2 * std::log(x))));
-    }
+ForwardAttenuationTable forward_attenuation_table(const HairMaterial& material) {
+  constexpr std::size_t kKept = 64;
+  static std::mutex mutex;
+  static std::deque<std::pair<TableKey, ForwardAttenuationTable>> kept;  // the latest in front
+  const TableKey key = table_key(material);
+  {
+    const std::lock_guard lock(mutex);
+    for (const auto& [known, table] : kept)
+      if (known == key) return table;
   }
+  ForwardAttenuationTable table = make_forward_attenuation_table(material);
+  const std::lock_guard lock(mutex);
+  kept.emplace_front(key, table);
+  if (kept.size() > kKept) kept.pop_back();
   return table;
 }
 

@@ -28,7 +28,7 @@ struct ForwardAttenuationTable {
 /// The model decides the azimuthal lobes: Zhu has its own, Chiang has Marschner's. Zinke 2008, eq. 6; docs/derivations/dual_scattering.md.
 double forward_attenuation(const HairMaterial& material, double cos_theta, double sigma_a);
 
-/// Deterministic; about 10 ms. Safe to call from several threads.
-ForwardAttenuationTable make_forward_attenuation_table(const HairMaterial& material);
+/// Deterministic; about 10 ms of processor time, once for each of the last 64 materials. Safe to call from several threads.
+ForwardAttenuationTable forward_attenuation_table(const HairMaterial& material);
 
 }  // namespace pelage

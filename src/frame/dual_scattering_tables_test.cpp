@@ -36,7 +36,7 @@ double exact_forward(double cos_theta, double eta, double sigma_a) {
 TEST(ForwardAttenuationTable, WithinItsBoundOfAdaptiveQuadrature) {
   HairMaterial m;
   m.beta_azimuthal = 1e-4f;
-  const ForwardAttenuationTable table = make_forward_attenuation_table(m);
+  const ForwardAttenuationTable table = forward_attenuation_table(m);
   double worst = 0;
   for (const double cos_theta : {0.02, 0.05, 0.11, 0.28, 0.5, 0.71, 0.93, 1.0}) {
     for (const double sigma_a : {0.0, 0.04, 0.15, 0.5, 1.3, 4.0, 11.0}) {
@@ -56,7 +56,7 @@ TEST(ForwardAttenuationTable, InterpolatesWithinItsBoundForEveryModel) {
     for (const float beta_n : {0.05f, 0.26f, 0.9f}) {
       HairMaterial m;
       m.model = model, m.beta_azimuthal = beta_n;
-      const ForwardAttenuationTable table = make_forward_attenuation_table(m);
+      const ForwardAttenuationTable table = forward_attenuation_table(m);
       for (double cos_theta = 0.02; cos_theta <= 1; cos_theta += 0.0531) {
         for (double x = 0.02; x <= 1; x += 0.0473) {
           const double sigma_a = -2 * std::log(x);
@@ -74,7 +74,7 @@ TEST(ForwardAttenuationTable, AgreesWithTheLobesOfTheKernel) {
   for (const auto model : {HairMaterial::Model::kMarschner, HairMaterial::Model::kZhu, HairMaterial::Model::kChiang}) {
     HairMaterial m;
     m.model = model;
-    const ForwardAttenuationTable table = make_forward_attenuation_table(m);
+    const ForwardAttenuationTable table = forward_attenuation_table(m);
     for (float theta = 0; theta < 1.5f; theta += 0.1f) {
       const kernel::ScatterFiber f =
           kernel::scatter_fiber(m.eta, m.beta_longitudinal, m.beta_azimuthal, m.cuticle_tilt, 1, {0.1f, 0.5f, 1.5f});
@@ -93,7 +93,7 @@ TEST(ForwardAttenuationTable, AgreesWithTheLobesOfTheKernel) {
 
 TEST(ForwardAttenuationTable, EndsOfItsDomain) {
   HairMaterial m;
-  const ForwardAttenuationTable table = make_forward_attenuation_table(m);
+  const ForwardAttenuationTable table = forward_attenuation_table(m);
   for (const float c : {0.f, 1.f, -1.f, 2.f}) {
     for (const float sigma : {0.f, 1e30f, -1.f}) {
       EXPECT_GE(table.lookup(c, sigma), 0);

@@ -10,6 +10,7 @@
 #include "frame/camera_view.h"
 #include "frame/one_frame.h"
 #include "frame/ways_back.h"
+#include "frame/window.h"
 #include "raster/opaque.h"
 #include "raster/keys.h"
 #include "raster/raster.h"
@@ -30,28 +31,20 @@ std::uint64_t bytes_of(const GBuffer& g) {
 
 constexpr Vec2 kPixelCenter{0.5f, 0.5f};
 
-// Rows of the picture that go through raster, shade and resolve together.
-struct Band {
-  int first_row, rows;
-};
-
 // Sample layers of a large picture would not fit into memory: bands of about this many samples do. The bands follow from
-// the settings alone, never from the machine, because a band's pixels may differ in the last bit from a whole picture's.
+// the scene alone, never from the machine, because a band's pixels may differ in the last bit from a whole picture's.
 constexpr std::size_t kSamplesPerBand = std::size_t{1} << 23;
 
-std::vector<Band> bands_of(const RenderSettings& s, std::size_t samples) {
-  const std::size_t per_row = static_cast<std::size_t>(s.width) * samples;
+/// Rows of `window` that go through raster, shade and resolve together; none of an empty one.
+std::vector<Window> bands_of(const Window& window, std::size_t samples) {
+  std::vector<Window> bands;
+  if (window.width <= 0 || window.height <= 0) return bands;
+  const std::size_t per_row = static_cast<std::size_t>(window.width) * samples;
   const int most = static_cast<int>(std::max<std::size_t>(1, kSamplesPerBand / per_row));
-  const int count = (s.height + most - 1) / most, rows = (s.height + count - 1) / count;
-  std::vector<Band> bands;
-  for (int y = 0; y < s.height; y += rows) bands.push_back({y, std::min(rows, s.height - y)});
+  const int count = (window.height + most - 1) / most, rows = (window.height + count - 1) / count;
+  for (int y = 0; y < window.height; y += rows)
+    bands.push_back({window.x, window.y + y, window.width, std::min(rows, window.height - y)});
   return bands;
-}
-
-CameraView view_of_band(CameraView view, const Band& band) {
-  view.center_y -= static_cast<float>(band.first_row);
-  view.height = band.rows;
-  return view;
 }
 
 // The strand that touches each pixel none of whose samples a strand covers: colors for AlphaSource::kAnalytic.
@@ -70,22 +63,24 @@ GBuffer edge_layer(const GBuffer& gbuffer) {
 }
 
 // Nearest thing that the first sample of each pixel sees, strand or mesh.
-void keep_nearest(const GBuffer& gbuffer, std::size_t first_pixel, Buffer<float>& nearest) {
+void keep_nearest(const GBuffer& gbuffer, const Window& band, int picture_width, Buffer<float>& nearest) {
   const Buffer<PixelKey>& keys = gbuffer.sample_keys.empty() ? gbuffer.center : gbuffer.sample_keys;
-  const auto samples = static_cast<std::size_t>(gbuffer.samples);
-  parallel_for(keys.size() / samples, 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
+  const auto samples = static_cast<std::size_t>(gbuffer.samples), width = static_cast<std::size_t>(band.width);
+  parallel_for(static_cast<std::size_t>(band.height), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin * width; p < end * width; ++p) {
       const PixelKey key = keys[p * samples];
       const float mesh = gbuffer.opaque_depth.empty() ? INFINITY : gbuffer.opaque_depth[p * samples];
-      nearest[first_pixel + p] = key == kEmptyPixel ? mesh : key_depth(key);
+      const std::size_t row = static_cast<std::size_t>(band.y) + p / width,
+                        column = static_cast<std::size_t>(band.x) + p % width;
+      nearest[row * static_cast<std::size_t>(picture_width) + column] = key == kEmptyPixel ? mesh : key_depth(key);
     }
   });
 }
 
-void render_band(const FrameInputs& inputs, const Band& band, std::span<const Vec2> samples, Stages& stages, Image& linear,
+void render_band(const FrameInputs& inputs, const Window& band, std::span<const Vec2> samples, Stages& stages, Image& linear,
                  Buffer<float>* nearest) {
   const RenderSettings& settings = inputs.scene.settings;
-  const CameraView view = view_of_band(inputs.view, band);
+  const CameraView view = view_of(inputs.view, band);
   const bool analytic = settings.alpha == AlphaSource::kAnalytic;
   const std::uint64_t pixels = static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
 
@@ -107,8 +102,7 @@ void render_band(const FrameInputs& inputs, const Band& band, std::span<const Ve
     return StageWork{segments, bytes_of(gbuffer)};
   });
 
-  const std::size_t first_pixel = static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(view.width);
-  if (nearest) keep_nearest(gbuffer, first_pixel, *nearest);
+  if (nearest) keep_nearest(gbuffer, band, settings.width, *nearest);
   gbuffer.opaque_depth.release();  // what it hides is gone
 
   Radiance radiance, edges;
@@ -123,7 +117,7 @@ void render_band(const FrameInputs& inputs, const Band& band, std::span<const Ve
   gbuffer.sample_keys.release();  // every strand that they show has its color
   stages.run("composite", "pixels", [&](const Progress&) {
     if (linear.pixels.empty()) linear = Image(settings.width, settings.height, {"R", "G", "B", "A"});
-    resolve({gbuffer, radiance, edges, opaque, make_backdrop(inputs.scene, view)}, settings, band.first_row, linear);
+    resolve({gbuffer, radiance, edges, opaque, make_backdrop(inputs.scene, view)}, settings, band.x, band.y, linear);
     return StageWork{pixels, linear.pixels.size() * sizeof(float)};
   });
 }
@@ -132,9 +126,19 @@ void render_band(const FrameInputs& inputs, const Band& band, std::span<const Ve
 
 Image render_frame(const FrameInputs& inputs, std::span<const Vec2> positions, Stages& stages, Buffer<float>* nearest) {
   const RenderSettings& settings = inputs.scene.settings;
-  if (nearest) nearest->resize(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
-  Image linear;  // made by the first band that is ready for it
-  const std::vector<Band> bands = bands_of(settings, positions.size());
+  const auto pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
+  const Window window = window_of(inputs.view, inputs.rig.strands, inputs.meshes);
+  const bool beside = window.width < settings.width || window.height < settings.height;
+  if (nearest) nearest->resize(pixels);
+  if (nearest && beside) nearest->fill(INFINITY);
+  Image linear;  // made by the first band that is ready for it, where they make all of it
+  if (beside)
+    stages.run("composite", "pixels", [&](const Progress&) {
+      linear = backdrop_picture(make_backdrop(inputs.scene, inputs.view), settings);
+      return StageWork{pixels - static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height),
+                       linear.pixels.size() * sizeof(float)};
+    });
+  const std::vector<Window> bands = bands_of(window, positions.size());
   for (std::size_t i = 0; i < bands.size(); ++i) {
     stages.set_band(static_cast<int>(i), static_cast<int>(bands.size()));
     render_band(inputs, bands[i], positions, stages, linear, nearest);
@@ -151,7 +155,7 @@ Buffer<float> render_nearest(const FrameInputs& inputs, Stages& stages, Buffer<V
     return StageWork{segments, bytes_of(gbuffer)};
   });
   Buffer<float> nearest(gbuffer.center.size());
-  keep_nearest(gbuffer, 0, nearest);
+  keep_nearest(gbuffer, {0, 0, inputs.view.width, inputs.view.height}, inputs.view.width, nearest);
   if (way && inputs.before) *way = ways_back(inputs, gbuffer.center, nearest);
   return nearest;
 }

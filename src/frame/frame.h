@@ -142,6 +142,7 @@ struct LightRig {
   std::vector<PreparedLight> lights;  ///< lights of the scene, then pieces of the environment
   EnvironmentProbe probe;             ///< instead of pieces of the environment, where the settings ask for it
   std::array<Vec3, 9> irradiance{};   ///< environment on a diffuse surface by its normal, W/m²: real spherical harmonics
+  Bounds strands;                     ///< that the maps are of, widths included; world space. Empty: not known
 };
 
 /// Shaded colour of every distinct visible strand sample of a G-buffer: what composite spreads over pixels.

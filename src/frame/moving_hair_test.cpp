@@ -213,7 +213,8 @@ TEST(MovingHair, BlendingOverTimeFollowsIt) {
 }
 
 TEST(MovingHair, APictureOfAFrameIsThatOfTheFrameAlone) {
-  const Scene scene = moving_scene(test::helices(100, 16), 0.01f);
+  Scene scene = moving_scene(test::helices(100, 16), 0.01f);
+  scene.settings.thick_hairs.level = 1;  // levels that are chosen depend on the frame before
   PictureSequence sequence(at_frame(scene, 0));
   for (int f = 1; f < 4; ++f)
     EXPECT_EQ(sequence.next(at_frame(scene, f)).linear.pixels, render(at_frame(scene, f)).linear.pixels) << f;

@@ -126,7 +126,9 @@ Scene with_thick_hairs(const Scene& scene) {
   check_settings(scene.settings);
   ThickHairs thick(scene);
   if (!thick.active()) return scene;
-  return thick.drawn(scene, make_camera_view(scene.camera, scene.settings.width, scene.settings.height));
+  const CameraView view = make_camera_view(scene.camera, scene.settings.width, scene.settings.height);
+  thick.choose(scene, view);
+  return thick.drawn(scene, view);
 }
 
 struct PictureSequence::State {
@@ -161,11 +163,16 @@ struct PictureSequence::State {
   /// The scene as its levels of detail show it to the eye that `view` is of; both eyes see the same.
   const Scene& draw(const CameraView& view, Stages& stages) {
     if (!thick->active() || draws_hair_meshes(scene.settings)) return scene;
+    stages.run("lod.choose", "frames", [&](const Progress&) {
+      thick->choose(scene, view);
+      return StageWork{1, 0};
+    });
     stages.run("lod", "segments", [&](const Progress&) {
       drawn = thick->drawn(scene, view);
       if (thick->changed()) rig.reset();  // what casts shadows is what is seen
-      if (before) drawn_before = thick->drawn_alike(*before, view);
-      return StageWork{thick->segments(), 0};
+      if (before && thick->can_draw_alike()) drawn_before = thick->drawn(*before, view);
+      else drawn_before.reset();
+      return StageWork{drawn_segments(drawn), 0};
     });
     return drawn;
   }

@@ -85,6 +85,7 @@ LightRig prepare_lights(const Scene& scene, const MeshTracer& meshes) {
   LightRig rig;
   const std::vector<StrandLines> lines = strand_lines(scene.grooms);
   const Bounds hair = bounds(lines);
+  for (const StrandLines& l : lines) rig.strands.extend(l.reach());
   MapJob job{scene,
              meshes,
              lines,

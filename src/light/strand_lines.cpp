@@ -15,23 +15,37 @@
 namespace pelage {
 namespace {
 
-Bounds control_bounds(const GroomInstance& groom) {
-  constexpr std::size_t kGrain = 1 << 10;
+/// Of control points, in world space; of widths as they are stored.
+struct Extent {
+  Bounds box;
+  float widest = 0;
+  void extend(const Extent& e) { box.extend(e.box), widest = std::max(widest, e.widest); }
+};
+
+Extent part_extent(const GroomInstance& groom, const StrandPart& part) {
   const StrandSet& set = *groom.strands;
-  std::vector<Bounds> boxes((drawn_parts(groom) + kGrain - 1) / kGrain);
+  Extent e;
+  if (part.spans == 0) return e;
+  const std::size_t first = first_point(set, part), last = first + std::size_t{part.spans} * points_per_span(set.basis);
+  for (std::size_t i = first; i <= last; ++i) {
+    const Vec3 p = transform_point(groom.transform, set.points[i]);
+    e.box.lower = {std::min(e.box.lower.x, p.x), std::min(e.box.lower.y, p.y), std::min(e.box.lower.z, p.z)};
+    e.box.upper = {std::max(e.box.upper.x, p.x), std::max(e.box.upper.y, p.y), std::max(e.box.upper.z, p.z)};
+    e.widest = std::max(e.widest, set.width(i));
+  }
+  return e;
+}
+
+Extent drawn_extent(const GroomInstance& groom) {
+  constexpr std::size_t kGrain = 1 << 10;
+  std::vector<Extent> extents((drawn_parts(groom) + kGrain - 1) / kGrain);
   parallel_for(drawn_parts(groom), kGrain, [&](std::size_t begin, std::size_t end) {
-    Bounds box;
-    for (std::size_t s = begin; s < end; ++s) {
-      const StrandPart part = drawn_part(groom, s);
-      if (part.spans == 0) continue;
-      const Vec3* p = &set.points[first_point(set, part)];
-      const Vec3* last = p + part.spans * points_per_span(set.basis);
-      for (; p <= last; ++p) box.extend(transform_point(groom.transform, *p));
-    }
-    boxes[begin / kGrain] = box;
+    Extent e;
+    for (std::size_t s = begin; s < end; ++s) e.extend(part_extent(groom, drawn_part(groom, s)));
+    extents[begin / kGrain] = e;
   });
-  Bounds all;
-  for (const Bounds& b : boxes) all.extend(b);
+  Extent all;
+  for (const Extent& e : extents) all.extend(e);
   return all;
 }
 
@@ -63,15 +77,23 @@ std::size_t pick_one(std::size_t begin, std::size_t stride, std::size_t count) {
 }  // namespace
 
 StrandLines::StrandLines(const GroomInstance& groom)
-    : groom_(&groom), width_scale_(groom.width_scale * similarity_scale(groom.transform)), mean_span_(mean_span_length(groom)),
-      bounds_(control_bounds(groom)) {}
-
-StrandLines::Band StrandLines::band(std::size_t point) const {
-  const ThickSections* thick = groom_->sections.get();
-  if (!thick) return {groom_->strands->width(point), 1};
-  const float hair = thick->diameters[point] * thick->fibers[point];
-  const float wide = std::max(mean_width(length(thick->major[point]), length(thick->minor[point])), 1e-9f);
-  return {wide, hair / wide};
+    : groom_(&groom), width_scale_(groom.width_scale * similarity_scale(groom.transform)), mean_span_(mean_span_length(groom)) {
+  if (const ThickSections* thick = groom.sections.get()) {
+    bands_.resize(thick->major.size());
+    parallel_for(bands_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const float wide = std::max(mean_width(length(thick->major[i]), length(thick->minor[i])), 1e-9f);
+        bands_[i] = {wide, thick->diameters[i] * thick->fibers[i] / wide};
+      }
+    });
+  }
+  const Extent extent = drawn_extent(groom);
+  bounds_ = extent.box;
+  if (bounds_.empty()) return;
+  constexpr float kOvershoot = 0.125f;  // negative weights of Catmull-Rom curves sum to that at most
+  const float half = 0.5f * width_scale_ * extent.widest;
+  const Vec3 beyond = bounds_.extent() * kOvershoot + Vec3(half, half, half);
+  reach_ = {bounds_.lower - beyond, bounds_.upper + beyond};
 }
 
 void StrandLines::append(const StrandPart& part, const std::vector<Vec4>& weights, LineBlock& block) const {

@@ -19,6 +19,7 @@ class StrandLines {
 
   std::size_t part_count() const { return drawn_parts(*groom_); }
   const Bounds& bounds() const { return bounds_; }  ///< of the control points that are drawn, world space
+  const Bounds& reach() const { return reach_; }    ///< of the curves and their widths, world space
   float mean_span() const { return mean_span_; }    ///< metres, over at most a thousand strands
 
   /// One strand, or part of one, of each `stride` neighbors, picked by a random number of its own; all for stride 1, in the order that
@@ -35,13 +36,14 @@ class StrandLines {
   struct Band {
     float width, density;
   };
-  Band band(std::size_t point) const;
+  Band band(std::size_t point) const { return bands_.empty() ? Band{groom_->strands->width(point), 1} : bands_[point]; }
   void append(const StrandPart& part, const std::vector<Vec4>& weights, LineBlock& block) const;
 
   const GroomInstance* groom_;
+  std::vector<Band> bands_;  // [points] of thick hairs; else empty
   float width_scale_;
   float mean_span_ = 0;
-  Bounds bounds_;
+  Bounds bounds_, reach_;
 };
 
 std::vector<StrandLines> strand_lines(const std::vector<GroomInstance>& grooms);

@@ -1,10 +1,12 @@
 #include "lod/draw_levels.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
 
 #include "core/parallel.h"
+#include "kernel/scalar.h"
 
 namespace pelage {
 namespace {
@@ -42,6 +44,17 @@ class ThickHairPen {
   const LodEye eye_;
 };
 
+/// Room for the thick hairs first … last − 1.
+void reserve_for(const LodHierarchy& lod, const LodCut& cut, std::size_t first, std::size_t last, Pieces& part) {
+  std::size_t points = 0, runs = 0;
+  for (std::size_t h = first; h < last; ++h) {
+    const std::uint32_t shown = shown_segments(lod, cut, h), starts = shown & ~(shown << 1);
+    points += static_cast<std::size_t>(std::popcount(shown) + std::popcount(starts));
+    runs += static_cast<std::size_t>(std::popcount(starts));
+  }
+  reserve(points, runs, part);
+}
+
 /// What stands for the hairs that `cut` shows, level by level.
 Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster& draw) {
   std::vector<Pieces> parts;
@@ -51,6 +64,7 @@ Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster
     parallel_for(count, kHairsPerTask, [&](std::size_t begin, std::size_t end) {
       Pieces& part = parts[before + begin / kHairsPerTask];
       part.hairs.offsets = {0};
+      reserve_for(lod, cut, first + begin, first + end, part);
       for (std::size_t h = first + begin; h < first + end; ++h)
         for_each_run(shown_segments(lod, cut, h),
                      [&](const LodRun& run) { draw(static_cast<std::uint32_t>(h), level, run, part); });
@@ -96,7 +110,8 @@ float direction_variance(float length_ratio) {
 
 float covered_width(float band, float fiber, float fibers) {
   if (!(fiber < band)) return band > 0 ? band : fiber;
-  return band * -std::expm1(fibers * std::log1p(-fiber / band));
+  if (fibers == 1) return fiber;
+  return band * (1 - kernel::m_exp(fibers * kernel::m_log(1 - fiber / band)));
 }
 
 DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place) { return ThickHairPen(strands, place); }

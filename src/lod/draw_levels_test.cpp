@@ -330,7 +330,11 @@ TEST(ThickHairs, SmallHairTakesSmallMaps) {
   Scene scene;
   scene.grooms.push_back(groom_with_chain());
   ThickHairs thick(scene);
-  const auto size = [&](float distance) { return thick.drawn(scene, view_from({0, 0, distance})).settings.opacity_map_size; };
+  const auto size_of = [](ThickHairs& hairs, const Scene& of, float distance) {
+    hairs.choose(of, view_from({0, 0, distance}));
+    return hairs.drawn(of, view_from({0, 0, distance})).settings.opacity_map_size;
+  };
+  const auto size = [&](float distance) { return size_of(thick, scene, distance); };
   EXPECT_EQ(size(0.1f), scene.settings.opacity_map_size);
   EXPECT_EQ(size(1000), 64);
   EXPECT_TRUE(thick.changed());
@@ -341,7 +345,8 @@ TEST(ThickHairs, SmallHairTakesSmallMaps) {
   EXPECT_FALSE(thick.changed());
   scene.grooms.push_back(scene.grooms[0]);
   scene.grooms[1].lod = nullptr;  // of which it is not known how large it is
-  EXPECT_EQ(ThickHairs(scene).drawn(scene, view_from({0, 0, 1000})).settings.opacity_map_size, scene.settings.opacity_map_size);
+  ThickHairs other(scene);
+  EXPECT_EQ(size_of(other, scene, 1000), scene.settings.opacity_map_size);
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
 #include "lod/pieces.h"
 
+#include <iterator>
+
+#include "core/buffer.h"
+#include "core/parallel.h"
 #include "frame/strand_part.h"
 
 namespace pelage {
@@ -10,18 +14,10 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-void append(const StrandSet& from, StrandSet& to) {
-  const auto base = static_cast<std::uint32_t>(to.points.size());
-  for (std::size_t s = 1; s < from.offsets.size(); ++s) to.offsets.push_back(base + from.offsets[s]);
-  append(from.points, to.points), append(from.widths, to.widths), append(from.colors, to.colors);
-  append(from.transparency, to.transparency), append(from.root_uv, to.root_uv), append(from.strand_id, to.strand_id);
-  append(from.guide_id, to.guide_id), append(from.group, to.group);
-}
-
-void append(const ThickSections& from, ThickSections& to) {
-  append(from.major, to.major), append(from.minor, to.minor);
-  append(from.fibers, to.fibers), append(from.diameters, to.diameters), append(from.spreads, to.spreads);
-  append(from.levels, to.levels);
+template <class T>
+void reserve(std::size_t count, std::vector<T>& values) {
+  values.reserve(count);
+  prefer_huge_pages(values.data(), count * sizeof(T));
 }
 
 }  // namespace
@@ -60,10 +56,45 @@ void append_strand(const StrandSet& set, const StrandPart& part, float widen, St
   end_strand(pieces);
 }
 
+void reserve(std::size_t points, std::size_t curves, Pieces& pieces) {
+  StrandSet& hairs = pieces.hairs;
+  ThickSections& sections = pieces.sections;
+  for (std::vector<Vec3>* v : {&hairs.points, &sections.major, &sections.minor}) reserve(points, *v);
+  for (std::vector<float>* v : {&hairs.widths, &sections.fibers, &sections.diameters, &sections.spreads}) reserve(points, *v);
+  hairs.offsets.reserve(curves + 1), hairs.strand_id.reserve(curves), sections.levels.reserve(curves);
+}
+
 Pieces join(const std::vector<Pieces>& parts) {
   Pieces all;
-  all.hairs.offsets = {0};
-  for (const Pieces& part : parts) append(part.hairs, all.hairs), append(part.sections, all.sections);
+  std::size_t points = 0, curves = 0;
+  for (const Pieces& part : parts) points += part.hairs.points.size(), curves += part.sections.levels.size();
+  reserve(points, curves, all);
+  StrandSet& hairs = all.hairs;
+  ThickSections& sections = all.sections;
+  hairs.offsets = {0};
+  for (const Pieces& part : parts) {
+    const auto base = hairs.offsets.back();
+    for (std::size_t s = 1; s < part.hairs.offsets.size(); ++s) hairs.offsets.push_back(base + part.hairs.offsets[s]);
+  }
+  const auto gather = [&](auto& to, const auto& of) {
+    for (const Pieces& part : parts) append(of(part), to);
+  };
+  const auto strands = [&](auto member) {
+    gather(
+        hairs.*member, [&](const Pieces& p) -> auto& { return p.hairs.*member; });
+  };
+  const auto places = [&](auto member) {
+    gather(
+        sections.*member, [&](const Pieces& p) -> auto& { return p.sections.*member; });
+  };
+  const std::function<void()> arrays[] = {[&] { strands(&StrandSet::points); },     [&] { places(&ThickSections::major); },
+                                          [&] { places(&ThickSections::minor); },   [&] { strands(&StrandSet::widths); },
+                                          [&] { places(&ThickSections::fibers); },  [&] { places(&ThickSections::diameters); },
+                                          [&] { places(&ThickSections::spreads); }, [&] { places(&ThickSections::levels); },
+                                          [&] { strands(&StrandSet::colors); },     [&] { strands(&StrandSet::transparency); },
+                                          [&] { strands(&StrandSet::root_uv); },    [&] { strands(&StrandSet::strand_id); },
+                                          [&] { strands(&StrandSet::guide_id); },   [&] { strands(&StrandSet::group); }};
+  parallel_for(std::size(arrays), 1, [&](std::size_t i, std::size_t) { arrays[i](); });
   return all;
 }
 

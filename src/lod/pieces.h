@@ -50,6 +50,9 @@ void end_strand(StrandSet& set);
 /// A part of a strand, `widen` times as wide as it is.
 void append_strand(const StrandSet& set, const StrandPart& part, float widen, StrandSet& pieces);
 
+/// Makes room for so many points of so many curves.
+void reserve(std::size_t points, std::size_t curves, Pieces& pieces);
+
 /// All of `parts`, one after the other.
 Pieces join(const std::vector<Pieces>& parts);
 

@@ -14,13 +14,7 @@ namespace pelage {
 namespace {
 
 constexpr int kSmallestMap = 64;
-constexpr float kTexelsPerPixel = 2;
-
-std::uint64_t spans_of(const GroomInstance& groom) {
-  std::uint64_t spans = 0;
-  for (std::size_t i = 0; i < drawn_parts(groom); ++i) spans += drawn_part(groom, i).spans;
-  return spans;
-}
+constexpr float kTexelsPerPixel = 1.25f;  // of the box's diagonal; lights see it shorter
 
 /// How wide a box may look on the screen, pixels; INFINITY before the near plane.
 float pixels_wide(const Bounds& box, const CameraView& view, const Affine& to_camera) {
@@ -30,31 +24,16 @@ float pixels_wide(const Bounds& box, const CameraView& view, const Affine& to_ca
   return length(box.extent()) * similarity_scale(to_camera) * pixels_per_metre(view, nearest);
 }
 
-/// Texels a side of maps of lights for hair that is `pixels` wide: a power of two, so that it seldom changes, at least two a pixel
-/// and no less than the settings' smallest; `most` where hair is large.
+/// Texels a side of maps of lights for hair that is `pixels` wide: in steps of √2, so that it seldom changes, no less than the smallest,
+/// `most` where hair is large.
 int map_size(float pixels, int most) {
-  int size = kSmallestMap;
-  while (size < most && static_cast<float>(size) < kTexelsPerPixel * pixels) size *= 2;
-  return std::min(size, most);
+  float size = kSmallestMap;
+  while (size < static_cast<float>(most) && size < kTexelsPerPixel * pixels) size *= 1.41421356f;
+  return std::min(static_cast<int>(std::lround(size)), most);
 }
 
-/// `scene` with what `draw(groom, place)` makes of grooms that have levels, in the order of the scene; others stay as they are.
-template <class Grooms, class Draw>
-Scene draw_grooms(const Scene& scene, Grooms& with_levels, const CameraView& view, const Draw& draw) {
-  Scene drawn = scene;
-  drawn.grooms.clear();
-  auto next = with_levels.begin();
-  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
-    const GroomInstance& groom = scene.grooms[g];
-    if (next == with_levels.end() || next->number != g) {
-      drawn.grooms.push_back(groom);
-      continue;
-    }
-    std::vector<GroomInstance> pieces =
-        draw(*next++, LodPlace{*groom.lod, view, compose(view.world_to_camera, groom.transform)});
-    std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
-  }
-  return drawn;
+LodPlace place_of(const GroomInstance& groom, const CameraView& view) {
+  return {*groom.lod, view, compose(view.world_to_camera, groom.transform)};
 }
 
 }  // namespace
@@ -71,13 +50,14 @@ ThickHairs::ThickHairs(const Scene& scene) {
   }
 }
 
-std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const ThickHairSettings& settings,
-                                            const LodPlace& place, Groom& groom) {
+LodCut ThickHairs::chosen(const Groom& groom, const ThickHairSettings& settings, const LodPlace& place) {
+  if (groom.cards) return HairCards::choose(place, groom.prisms, settings.pixels, settings.level, groom.cut);
+  if (settings.level < 0) return choose_levels(place, groom.prisms, settings.pixels, groom.cut);
+  return one_level(place.lod, std::min(static_cast<std::size_t>(settings.level), place.lod.levels() - 1));
+}
+
+std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const LodPlace& place, const Groom& groom) {
   const StrandSet& set = *instance.strands;
-  const std::size_t finest = place.lod.levels() - 1;
-  if (groom.cards) groom.cut = HairCards::choose(place, groom.prisms, settings.pixels, settings.level, groom.cut);
-  else if (settings.level >= 0) groom.cut = one_level(place.lod, std::min(static_cast<std::size_t>(settings.level), finest));
-  else groom.cut = choose_levels(place, groom.prisms, settings.pixels, groom.cut);
   if (groom.cards) return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kLinear, groom.cards->pen(set, place));
   if (groom.thickened)
     return draw_levels(instance, groom.cut, groom.cuts, set.basis, groom.thickened->pen(set, place.lod, groom.cuts));
@@ -87,37 +67,54 @@ std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const
 void ThickHairs::move(const Scene& scene) {
   for (Groom& groom : grooms_) {
     const GroomInstance& instance = scene.grooms[groom.number];
-    groom.prisms = PrismHairs(*instance.lod);
+    groom.prisms = PrismHairs(*instance.lod), groom.cuts = StrandCuts(*instance.strands);
     if (groom.thickened) groom.thickened.emplace(*instance.lod);
     if (groom.cards) groom.cards.emplace(*instance.strands, *instance.lod);
   }
 }
 
-std::optional<Scene> ThickHairs::drawn_alike(const Scene& scene, const CameraView& view) const {
-  if (std::any_of(grooms_.begin(), grooms_.end(), [](const Groom& g) { return g.cards || g.thickened; })) return std::nullopt;
-  return draw_grooms(scene, grooms_, view, [&](const Groom& groom, const LodPlace& place) {
-    const GroomInstance& instance = scene.grooms[groom.number];
-    return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kCatmullRom, thick_hair_pen(*instance.strands, place));
-  });
+void ThickHairs::choose(const Scene& scene, const CameraView& view) {
+  PELAGE_CHECK(active());
+  float pixels = grooms_.size() == scene.grooms.size() ? 0 : INFINITY;  // grooms without levels of detail take maps as they are
+  changed_ = false;
+  for (Groom& groom : grooms_) {
+    const LodPlace place = place_of(scene.grooms[groom.number], view);
+    pixels = std::max(pixels, pixels_wide(groom.prisms.box(), view, place.to_camera));
+    LodCut cut = chosen(groom, scene.settings.thick_hairs, place);
+    changed_ = changed_ || cut != groom.cut;
+    groom.cut = std::move(cut);
+  }
+  const int size = map_size(pixels, scene.settings.opacity_map_size);
+  changed_ = changed_ || size != map_size_;
+  map_size_ = size;
 }
 
-Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) {
-  PELAGE_CHECK(active());
-  changed_ = false, segments_ = 0;
-  float pixels = grooms_.size() == scene.grooms.size() ? 0 : INFINITY;  // grooms without levels of detail take maps as they are
-  Scene drawn = draw_grooms(scene, grooms_, view, [&](Groom& groom, const LodPlace& place) {
-    pixels = std::max(pixels, pixels_wide(groom.prisms.box(), view, place.to_camera));
-    const LodCut before = groom.cut;
-    std::vector<GroomInstance> pieces = draw(scene.grooms[groom.number], scene.settings.thick_hairs, place, groom);
-    changed_ = changed_ || before != groom.cut;
-    return pieces;
-  });
-  drawn.settings.opacity_map_size = map_size(pixels, scene.settings.opacity_map_size);
-  changed_ = changed_ || map_size_ != drawn.settings.opacity_map_size;
-  map_size_ = drawn.settings.opacity_map_size;
-  for (const GroomInstance& groom : drawn.grooms)
-    if (groom.strands) segments_ += spans_of(groom);
+Scene ThickHairs::drawn(const Scene& scene, const CameraView& view) const {
+  Scene drawn = scene;
+  drawn.grooms.clear();
+  auto next = grooms_.begin();
+  for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
+    const GroomInstance& groom = scene.grooms[g];
+    if (next == grooms_.end() || next->number != g) {
+      drawn.grooms.push_back(groom);
+      continue;
+    }
+    std::vector<GroomInstance> pieces = draw(groom, place_of(groom, view), *next++);
+    std::move(pieces.begin(), pieces.end(), std::back_inserter(drawn.grooms));
+  }
+  drawn.settings.opacity_map_size = map_size_;
   return drawn;
+}
+
+bool ThickHairs::can_draw_alike() const {
+  return std::none_of(grooms_.begin(), grooms_.end(), [](const Groom& g) { return g.cards || g.thickened; });
+}
+
+std::uint64_t drawn_segments(const Scene& drawn) {
+  std::uint64_t segments = 0;
+  for (const GroomInstance& groom : drawn.grooms)
+    for (std::size_t i = 0; groom.strands && i < drawn_parts(groom); ++i) segments += drawn_part(groom, i).spans;
+  return segments;
 }
 
 }  // namespace pelage

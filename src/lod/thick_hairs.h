@@ -24,19 +24,20 @@ class ThickHairs {
 
   bool active() const { return !grooms_.empty(); }
 
-  /// `scene` with its grooms as `view` shows them, and RenderSettings::opacity_map_size no finer than what is seen. Where active(); the
-  /// scene must be the one that this was made for.
-  Scene drawn(const Scene& scene, const CameraView& view);
+  /// Chooses levels for the grooms of `scene` as `view` shows them, and how fine maps of lights need to be. Where active(); the scene must be the
+  /// one that this was made for, or that of the last move().
+  void choose(const Scene& scene, const CameraView& view);
+  /// Whether that chose other levels than the time before, or another size for the maps.
+  bool changed() const { return changed_; }
+
+  /// `scene` with its grooms at the levels that were chosen, and RenderSettings::opacity_map_size no finer than what is seen. Of another pose of the
+  /// scene, where can_draw_alike(): the same strands and pieces of thick hairs.
+  Scene drawn(const Scene& scene, const CameraView& view) const;
+  /// Unless something else than thick hairs stands for clusters.
+  bool can_draw_alike() const;
 
   /// `scene` in another pose of its grooms, to choose levels for from now on.
   void move(const Scene& scene);
-  /// `scene`, another pose of that of which drawn() was called last, as the same strands and pieces of thick hairs. None where something else than
-  /// thick hairs stands for clusters.
-  std::optional<Scene> drawn_alike(const Scene& scene, const CameraView& view) const;
-
-  /// Whether the last call chose other levels than the one before, or another size for the maps of lights.
-  bool changed() const { return changed_; }
-  std::uint64_t segments() const { return segments_; }  ///< of the last call: spans of what is drawn
 
  private:
   struct Groom {
@@ -47,12 +48,14 @@ class ThickHairs {
     std::optional<ThickenedStrands> thickened;  // where they stand for clusters
     std::optional<HairCards> cards;             // where they do
   };
-  static std::vector<GroomInstance> draw(const GroomInstance& instance, const ThickHairSettings& settings,
-                                         const LodPlace& place, Groom& groom);
+  static LodCut chosen(const Groom& groom, const ThickHairSettings& settings, const LodPlace& place);
+  static std::vector<GroomInstance> draw(const GroomInstance& instance, const LodPlace& place, const Groom& groom);
   std::vector<Groom> grooms_;
   int map_size_ = 0;
   bool changed_ = false;
-  std::uint64_t segments_ = 0;
 };
+
+/// Spans of everything that is drawn.
+std::uint64_t drawn_segments(const Scene& drawn);
 
 }  // namespace pelage

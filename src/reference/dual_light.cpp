@@ -60,7 +60,7 @@ DualLight::DualLight(const std::vector<GroomInstance>& grooms) {
     if (entry.mapped) entry.levels = RoughnessLevels(groom);
     if (model != Model::kKajiyaKay && model != Model::kSadeghi)
       for (const float roughness : entry.levels.values())
-        entry.attenuation.push_back(make_forward_attenuation_table(entry.at({roughness, 1})));
+        entry.attenuation.push_back(forward_attenuation_table(entry.at({roughness, 1})));
     grooms_.push_back(std::move(entry));
   }
 }

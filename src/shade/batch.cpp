@@ -105,7 +105,7 @@ ShadeConstants shade_constants(const GroomInstance& groom, bool dual_scattering,
   if (!tabulated) return k;
   for (const float roughness : k.levels.values()) {
     const HairMaterial level = k.mapped ? finished(material, {roughness, 1}) : material;
-    const std::vector<float> table = make_forward_attenuation_table(level).a_f;
+    const std::vector<float> table = forward_attenuation_table(level).a_f;
     k.attenuation.insert(k.attenuation.end(), table.begin(), table.end());
   }
   return k;
