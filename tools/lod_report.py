@@ -350,7 +350,7 @@ def speed(shop, report, options):
     goals = {0.5: 0.99, 0.1: 2, 0.003: 13}
     report.text("Speed against the share of the screen (figure 7)", heading=True)
     report.text(f"Hair alone, {options.speed_size}² pixels, 8 samples, one light; medians of {options.runs} paired runs, all strands and thick hairs in turn, maps of light made anew in each "
-                "frame, reading and writing files not counted. `lod` chooses levels and makes what is drawn of them.")
+                "frame, reading and writing files not counted. `lod.choose` chooses levels, `lod` makes what is drawn of them.")
     stage = Stage(shop, options.styles[0], options)
     found = {share: paired(shop, stage, share, options) for share in options.shares}
     stages = [s["stage"] for s in next(iter(found.values()))[0][1]["stages"] if not s["stage"].startswith("io.")]
@@ -360,7 +360,7 @@ def speed(shop, report, options):
             return sum(s["seconds"] for s in told["stages"] if not s["stage"].startswith("io."))
         ratios[share] = statistics.median(total(a) / total(b) for a, b in runs)
         thick = statistics.median(total(b) for _, b in runs)
-        selection[share] = statistics.median(stage_seconds(b, "lod") / total(b) for _, b in runs)
+        selection[share] = statistics.median(stage_seconds(b, "lod.choose") / total(b) for _, b in runs)
         rows.append([f"{100 * share:g} %", f"{1e3 * statistics.median(total(a) for a, _ in runs):.1f}", f"{1e3 * thick:.1f}", f"{ratios[share]:.2f}",
                      *(f"{1e3 * statistics.median(stage_seconds(a, s) for a, _ in runs):.1f} / {1e3 * statistics.median(stage_seconds(b, s) for _, b in runs):.1f}" for s in stages)])
         if share in goals:
@@ -370,7 +370,7 @@ def speed(shop, report, options):
     report.numbers["speed"] = {"ratio": ratios, "selection": selection}
     worst = max(selection, key=selection.get)
     report.verdict("selection ≤ 2 % of the frame", all(v <= 0.02 for v in selection.values()) if options.whole else None,
-                   f"stage lod, with making what is drawn: {100 * selection[worst]:.1f} % at {100 * worst:g} %, {100 * min(selection.values()):.1f} % at least")
+                   f"stage lod.choose: {100 * selection[worst]:.1f} % at {100 * worst:g} %, {100 * min(selection.values()):.1f} % at least")
 
 
 # ---- Smoothness -----------------------------------------------------------------------------------------------------------------------------------
