@@ -1,9 +1,10 @@
-// pelage grow: makes hair from a seed, as strands or as a hair mesh.
+// pelage grow: makes hair from a seed, as strands or as a hair mesh, and knitted cloth.
 #include <fmt/format.h>
 #include <pelage/error.h>
 #include <pelage/grow.h>
 #include <pelage/hair_mesh_styles.h>
 #include <pelage/io.h>
+#include <pelage/knit.h>
 
 #include <algorithm>
 #include <array>
@@ -25,6 +26,7 @@ struct Change {
   const char* option;
   std::function<void(GrowSettings&)> apply;
 };
+using KnitChange = std::function<void(KnitSettings&)>;
 
 struct GrowOptions {
   std::string style, output, mesh, head_output;
@@ -32,7 +34,8 @@ struct GrowOptions {
   float length_scale = 1;
   float mesh_scale = 1;
   UpAxis mesh_up = UpAxis::kY;
-  std::vector<Change> changes;  // to the style's defaults, as typed
+  std::vector<Change> changes;           // to the style's defaults, as typed
+  std::vector<KnitChange> knit_changes;  // to those of knitted cloth
 };
 
 using OptionsPtr = std::shared_ptr<GrowOptions>;
@@ -81,6 +84,42 @@ void add_settings(CLI::App& verb, const OptionsPtr& options) {
   share("--undercoat", &GrowSettings::undercoat, "Coat: share of short, fine wool between the guard hairs, 0 to 1");
 }
 
+// --name VALUE for a field of KnitSettings.
+template <class T>
+void add_knit_setting(CLI::App& verb, const OptionsPtr& options, const char* name, T KnitSettings::*field, const char* type,
+                      const char* help) {
+  verb.add_option_function<T>(
+          name, [options, field](T value) { options->knit_changes.push_back([=](KnitSettings& s) { s.*field = value; }); },
+          help)
+      ->type_name(type)
+      ->group("Knitted cloth, with --strands, --points and --seed");
+}
+
+void add_knit_settings(CLI::App& verb, const OptionsPtr& options) {
+  const auto share = [&](const char* name, float KnitSettings::*field, const char* help) {
+    add_knit_setting(verb, options, name, field, "X", help);
+  };
+  add_knit_setting(verb, options, "--wales", &KnitSettings::wales, "N", "Columns of stitches, 1 to 1000");
+  add_knit_setting(verb, options, "--courses", &KnitSettings::courses, "N", "Rows of stitches, 1 to 1000");
+  add_knit_setting(verb, options, "--yarn", &KnitSettings::yarn, "M",
+                   "Diameter of the yarn, meters; a stitch is 3.3 wide and 2.5 high");
+  add_knit_setting(verb, options, "--plies", &KnitSettings::plies, "N", "Plies of a yarn, 1 to 16");
+  share("--ply-pitch", &KnitSettings::ply_pitch, "Diameters of the yarn along which its plies turn once, 1 to 1000");
+  share("--fiber-pitch", &KnitSettings::fiber_pitch, "The same of the fibers of a ply, which turn the other way");
+  share("--packing", &KnitSettings::packing, "Share of a ply's section that fibers take, 0.01 to 1: how thick they are");
+  share("--migration", &KnitSettings::migration,
+        "Share of their distance from a ply's middle that fibers give up on their way, 0 to 1");
+  share("--irregularity", &KnitSettings::irregularity, "Unevenness of the cloth, diameters of the yarn, 0 to 0.5");
+}
+
+// Throws UsageError at the first change of hair that is none of `shared`.
+template <std::size_t N>
+void allow_only(const GrowOptions& options, const std::array<const char*, N>& shared, const char* problem, const char* remedy) {
+  for (const Change& change : options.changes)
+    if (std::none_of(shared.begin(), shared.end(), [&](const char* name) { return std::string(name) == change.option; }))
+      throw UsageError(change.option, "", problem, remedy);
+}
+
 GrowSettings settings_of(const GrowOptions& options) {
   GrowSettings settings = grow_defaults(hair_style_from_name(options.style));
   for (const Change& change : options.changes) change.apply(settings);
@@ -89,18 +128,14 @@ GrowSettings settings_of(const GrowOptions& options) {
 
 // The settings of a hair mesh that go by the same words.
 HairMeshSettings hair_mesh_settings_of(const GrowOptions& options) {
-  constexpr std::array kShared{"--strands", "--seed", "--width", "--parting"};
+  allow_only(options, std::array{"--strands", "--seed", "--width", "--parting"}, "not a setting of hair meshes",
+             "theirs are --strands, --seed, --width, --parting and --length-scale");
   HairMeshSettings settings;
   settings.style = hair_mesh_style_from_name(options.style);
   settings.length = options.length_scale;
   GrowSettings words;
   words.strands = static_cast<int>(settings.strands), words.width = settings.width, words.parting = settings.parting;
-  for (const Change& change : options.changes) {
-    if (std::none_of(kShared.begin(), kShared.end(), [&](const char* name) { return std::string(name) == change.option; }))
-      throw UsageError(change.option, "", "not a setting of hair meshes",
-                       "theirs are --strands, --seed, --width, --parting and --length-scale");
-    change.apply(words);
-  }
+  for (const Change& change : options.changes) change.apply(words);
   settings.strands = static_cast<std::uint32_t>(std::max(words.strands, 0));
   settings.seed = static_cast<std::uint32_t>(words.seed);
   settings.width = words.width, settings.parting = words.parting;
@@ -122,22 +157,47 @@ void hair_mesh_verb(const GrowOptions& options) {
              std::filesystem::file_size(options.output));
 }
 
+bool is_knit(const std::string& style) { return style.starts_with("knit"); }
+
+KnitSettings knit_settings_of(const GrowOptions& options) {
+  allow_only(options, std::array{"--strands", "--points", "--seed"}, "not a setting of knitted cloth",
+             "pelage grow --help lists them");
+  if (!options.mesh.empty() || !options.head_output.empty())
+    throw UsageError("--mesh", "", "cloth is not grown on a surface", "leave it away");
+  KnitSettings settings;
+  settings.pattern = knit_pattern_from_name(options.style);
+  GrowSettings words;
+  words.strands = settings.strands, words.points = settings.points, words.seed = settings.seed;
+  for (const Change& change : options.changes) change.apply(words);
+  settings.strands = words.strands, settings.points = words.points, settings.seed = words.seed;
+  for (const KnitChange& change : options.knit_changes) change(settings);
+  return settings;
+}
+
+StrandSet grow_strands(const GrowOptions& options, const Progress& progress) {
+  if (is_knit(options.style)) return grow_knit(knit_settings_of(options), progress);
+  if (!options.knit_changes.empty())
+    throw UsageError("--wales and the like", "", "settings of knitted cloth", "pelage grow " + knit_pattern_names()[0]);
+  const GrowSettings settings = settings_of(options);
+  const TriangleMesh surface =
+      options.mesh.empty() ? mannequin_head() : read_mesh(options.mesh, options.mesh_scale, options.mesh_up);
+  StrandSet strands = grow(settings, surface, progress);
+  if (!options.head_output.empty()) write_mesh(options.head_output, surface);
+  return strands;
+}
+
 void grow_verb(const GrowOptions& options) {
   if (options.hair_mesh_schema) return void(fmt::print("{}", io::hair_mesh_schema()));
   if (options.style.empty()) throw UsageError("STYLE", "", "missing", "pelage grow --help lists them");
   if (options.output.empty()) throw UsageError("--output", "", "missing", "name the file to write");
   if (options.hair_mesh) return hair_mesh_verb(options);
-  const GrowSettings settings = settings_of(options);
-  const TriangleMesh surface =
-      options.mesh.empty() ? mannequin_head() : read_mesh(options.mesh, options.mesh_scale, options.mesh_up);
   StrandSet strands;
   std::vector<std::string> losses;
   {
     ProgressLine progress;
-    strands = grow(settings, surface, progress.callback());
+    strands = grow_strands(options, progress.callback());
     losses = write_strands(options.output, strands, "", progress.callback());
   }
-  if (!options.head_output.empty()) write_mesh(options.head_output, surface);
   for (const std::string& loss : losses) fmt::print(stderr, "pelage: {}: {}\n", options.output, loss);
   fmt::print("{}: {} strands, {} points\n", options.output, strands.strand_count(), strands.point_count());
 }
@@ -151,10 +211,11 @@ static std::string listed(const std::vector<std::string>& names) {
 }
 
 void add_grow(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("grow", "Make hair from a seed");
+  CLI::App* verb = app.add_subcommand("grow", "Make hair, or knitted cloth, from a seed");
   const auto options = std::make_shared<GrowOptions>();
   verb->add_option("STYLE", options->style,
-                   "One of " + listed(hair_style_names()) + "; with --hair-mesh one of " + listed(hair_mesh_style_names()));
+                   "One of " + listed(hair_style_names()) + ", or cloth: " + listed(knit_pattern_names()) +
+                       "; with --hair-mesh one of " + listed(hair_mesh_style_names()));
   verb->add_option("-o,--output", options->output, "Groom to write; the extension decides the format")->type_name("FILE");
   verb->add_flag("--hair-mesh", options->hair_mesh,
                  "Make a hair mesh, a few kilobytes from which strands are made when they are drawn: .hairmesh or .json");
@@ -168,6 +229,7 @@ void add_grow(CLI::App& app) {
       ->type_name("y|z");
   verb->add_option("--write-mesh", options->head_output, "Also write the surface, in meters, to FILE")->type_name("FILE");
   add_settings(*verb, options);
+  add_knit_settings(*verb, options);
   add_machine_options(*verb);
   verb->footer(
       "Settings that are not given come from the style.\n\n"
@@ -175,6 +237,7 @@ void add_grow(CLI::App& app) {
       "  pelage grow curly -o curly.pelage\n"
       "  pelage grow straight --strands 100000 --length 0.4 --seed 7 -o long.pelage --write-mesh head.obj\n"
       "  pelage grow coat --mesh spot.obj --strands 200000 -o spot.pelage\n"
+      "  pelage grow knit-rib --strands 80000 --wales 16 -o rib.pelage\n"
       "  pelage grow --hair-mesh bob -o bob.hairmesh");
   verb->callback([options] { grow_verb(*options); });
 }

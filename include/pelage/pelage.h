@@ -10,6 +10,7 @@
 #include <pelage/hair_mesh_styles.h>
 #include <pelage/image.h>
 #include <pelage/io.h>
+#include <pelage/knit.h>
 #include <pelage/lod.h>
 #include <pelage/metrics.h>
 #include <pelage/progress.h>

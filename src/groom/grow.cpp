@@ -1,25 +1,16 @@
-#include <pelage/error.h>
 #include <pelage/grow.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <type_traits>
 
+#include "groom/check_range.h"
 #include "groom/mannequin.h"
 #include "groom/strands.h"
 
 namespace pelage {
 namespace {
 
-// Compared in the value's own type: the float nearest to 0.05 lies inside a range that ends there.
-template <class T>
-void check_range(const char* name, T value, std::type_identity_t<T> low, std::type_identity_t<T> high) {
-  if (!(value >= low && value <= high))
-    throw Error("grow", name, fmt::format("{} is outside {} … {}", value, low, high), "choose a value in that range");
-}
-
 void check(const GrowSettings& s) {
+  using groom::check_range;
   check_range("strands", s.strands, 1, 1000000);
   check_range("points", s.points, 4, 1024);
   check_range("strands × points", static_cast<double>(s.strands) * s.points, 4, 4294967295.0);

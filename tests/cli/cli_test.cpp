@@ -310,6 +310,15 @@ TEST_F(Cli, GrowsEveryStyle) {
   }
 }
 
+TEST_F(Cli, GrowsKnittedCloth) {
+  for (const char* pattern : {"knit-stockinette", "knit-rib"}) {
+    const Outcome outcome =
+        run(std::string("grow ") + pattern + " --wales 3 --courses 2 --plies 2 --strands 100 --points 9 -o cloth.pelage");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("cloth.pelage: 96 strands, 864 points")) << "4 fibers in each of 24 pieces of plies";
+  }
+}
+
 TEST_F(Cli, GrowsOnAMeshOfAnyUnitsAndAxes) {
   std::ofstream(in("tile.obj")) << "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n";  // cm, z up
   const Outcome grown =
@@ -336,6 +345,11 @@ TEST_F(Cli, GrowRefusesWhatItCannotDo) {
       {"curly --strands many", 2, "--strands"},
       {"curly --strnds 5", 2, "did you mean --strands?"},
       {"curly --mesh-up x", 2, "--mesh-up"},
+      {"curly --wales 3", 2, "settings of knitted cloth"},
+      {"knit-rib --wales 0", 1, "wales: 0 is outside 1 … 1000"},
+      {"knit-rib --frizz 0.5", 2, "not a setting of knitted cloth"},
+      {"knit-rib --mesh tile.obj", 2, "cloth is not grown on a surface"},
+      {"knit-ribs", 1, "did you mean \"knit-rib\"?"},
   };
   for (const auto& [arguments, status, words] : cases) {
     const Outcome outcome = run(std::string("grow ") + arguments + " -o out.pelage");
