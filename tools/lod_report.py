@@ -71,20 +71,24 @@ def groom(shop, style, options):
 
 class Stage:
     """A groom before a camera that goes nearer and farther."""
+    azimuth, mannequin = AZIMUTH, [{"shape": "mannequin"}]
 
     def __init__(self, shop, style, options):
         self.shop, self.options, self.style = shop, options, style
-        self.file, _ = groom(shop, style, options)
+        self.file = self.grown()
         box = tell(shop, "info", self.file)["bounds"]
         self.target = [(a + b) / 2 for a, b in zip(box["lower"], box["upper"])]
         self.size = max(b - a for a, b in zip(box["lower"], box["upper"]))
 
+    def grown(self):
+        return groom(self.shop, self.style, self.options)[0]
+
     def scene(self, away, pixels, color="light-brown", light=45, head=True, background=(0.12, 0.13, 0.15)):
-        azimuth, elevation = math.radians(AZIMUTH), math.radians(ELEVATION)
+        azimuth, elevation = math.radians(self.azimuth), math.radians(ELEVATION)
         back = (math.sin(azimuth) * math.cos(elevation), math.sin(elevation), math.cos(azimuth) * math.cos(elevation))
         camera = {"eye": [round(c + away * b, 5) for c, b in zip(self.target, back)], "target": self.target, "fov": FOV}
         eumelanin, pheomelanin = COLORS[color]
-        return {"camera": camera, "meshes": [{"shape": "mannequin"}] if head else [],
+        return {"camera": camera, "meshes": self.mannequin if head else [],
                 "lights": [{"type": "directional", "direction": light_direction(camera, light, FALL), "intensity": [6, 6, 6]}],
                 "grooms": [{"file": f"../{self.file}", "material": {"eumelanin": eumelanin, "pheomelanin": pheomelanin}}],
                 "settings": {"width": pixels, "height": pixels, "background": list(background)}}
@@ -191,6 +195,9 @@ class Shot:
     def flip(self, picture, truth):
         return compare(self.stage.shop, picture, truth, "--mask", self.mask(), "--tone-map", "aces", "--metrics", "flip")["flip"]
 
+    def energy(self, picture, truth):
+        return compare(self.stage.shop, picture, truth, "--mask", self.mask(), "--metrics", "energy")["energy"]
+
     def tile(self, file, side):
         """The hair of a PNG, magnified to about `side` pixels."""
         whole = read_png(self.stage.shop.folder / file)
@@ -268,7 +275,7 @@ def traced(shop, report, options):
             shot = Shot(stage, name, second(options.colors), second(options.lights))
             file, truth = stage.write(shot.name, shot.scene), shot.truth(cache)
             thick, _ = cache.picture([file, "--lod"], [file, stage.file], options.samples, f"{shot.name}-thick")
-            energy = compare(shop, thick, truth, "--mask", shot.mask(), "--metrics", "energy")["energy"]
+            energy = shot.energy(thick, truth)
             flips.append(shot.flip(thick, truth))
             rows.append([f"{style}, {name}", f"{flips[-1]:.4f}", f"{energy:.3f}"])
             lines.append([shot.tile(pathlib.Path(f).with_suffix(".png"), options.tile) for f in (truth, thick)])
@@ -503,26 +510,38 @@ def aggregate(shop, report, options):
                    f"{len(closer)} of {len(errors['ours'])} panels, at most {worst:.2f} of its error")
 
 
+class Cloth(Stage):
+    """A knit patch, seen from before it."""
+    azimuth, mannequin = 15, []
+
+    def grown(self):
+        plain, file = f"grooms/{self.style}.pelage", f"grooms/{self.style}-lod.pelage"
+        few = ["--strands", str(self.options.strands), "--wales", "6", "--courses", "7"] if not self.options.whole else []
+        self.shop.make(["grow", self.style, *few], [], plain)
+        self.shop.make(["lod", "build", plain, "--guides", "0"], [plain], file, json_output=True)
+        return file
+
+
 def knit(shop, report, options):
     report.text("Knit patches (figure 13)", heading=True)
     grow = subprocess.run([shop.pelage, "grow", "--help"], capture_output=True, text=True).stdout
     kinds = sorted(set(re.findall(r"\bknit-[a-z]+", grow)))[:2]
-    if not kinds:
-        report.text("Left out: this program grows no knit.")
-        report.verdict("two knit patches", None, "left out: no `pelage grow knit-…`")
-        return
-    tiles = []
+    cache, lines, rows, better = TraceCache(shop, options.cache), [], [], []
     for kind in kinds:
-        file = f"grooms/{kind}.pelage"
-        shop.make(["grow", kind], [], file)
-        tiles.append([])
-        for name in ("full", "thick"):
-            output = f"pictures/{kind}-{name}.png"
-            shop.make(["render", file, "--size", f"{options.dolly_size}x{options.dolly_size}", *METHODS[name][1]], [file], output)
-            tiles[-1].append(read_png(shop.folder / output))
-    write_png(shop.folder / "knit.png", sheet(tiles))
-    report.picture("knit.png", f"{', '.join(kinds)}: all fibers, and plies as thick hairs.")
-    report.verdict("two knit patches", len(kinds) == 2, f"{', '.join(kinds)}: seen, not measured")
+        stage = Cloth(shop, kind, options)
+        for name in ("near", "far"):
+            shot = Shot(stage, name, options.colors[0], second(options.lights))
+            truth, pictures = shot.truth(cache), {METHODS[m][0]: shot.picture(m, METHODS[m][1])[0] for m in ("full", "thick", "fiber")}
+            pictures["thick hairs, path traced"], _ = cache.picture([stage.write(shot.name, shot.scene), "--lod"], [f"scenes/{shot.name}.json", stage.file],
+                                                                    options.samples, f"{shot.name}-thick")
+            flips = {label: shot.flip(file, truth) for label, file in pictures.items()}
+            rows.append([f"{kind}, {name}", *(f"{flips[l]:.4f}, {shot.energy(f, truth):.3f}" for l, f in pictures.items())])
+            better.append(flips[METHODS["thick"][0]] / flips[METHODS["full"][0]])
+            lines.append([shot.tile(pathlib.Path(f).with_suffix(".png"), 2 * options.tile) for f in (truth, *pictures.values())])
+    write_png(shop.folder / "knit.png", sheet(lines, gap=4))
+    report.picture("knit.png", f"From the left: path traced, {', '.join(pictures)}. From above: {', '.join(row[0] for row in rows)}.")
+    report.table(["FLIP; light over that path traced", *pictures], rows)
+    report.verdict("two knit patches", len(kinds) == 2, f"{', '.join(kinds)}: FLIP of thick hairs {min(better):.2f} to {max(better):.2f} of all fibers'")
 
 
 # ---- The whole -----------------------------------------------------------------------------------------------------------------------------------------

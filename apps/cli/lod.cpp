@@ -93,7 +93,8 @@ void add_build(CLI::App& lod) {
   verb->add_option("GROOM", o->in, "Groom in any format that is read")->type_name("FILE")->required();
   verb->add_option("-o,--output", o->out, "Groom with its levels of detail: .pelage")->type_name("FILE")->required();
   verb->add_option("--levels", s.levels, "Levels of thick hairs, at most, 1 to 16")->type_name("N")->capture_default_str();
-  verb->add_option("--guides", s.guides, "Guides, by which level 0 is grouped and all is moved")
+  verb->add_option("--guides", s.guides,
+                   "Guides, by which level 0 is grouped and all is moved; 0: those that the groom's strands name")
       ->type_name("N")
       ->capture_default_str();
   verb->add_option("--area-ratio", s.area_ratio, "By which cross-sections shrink from level to level, 1.5 to 64")

@@ -66,8 +66,10 @@ struct LodHierarchy {
   std::vector<float> radii;                        ///< [hair_count·kPoints] mean radius of the fibers, ≥ 0
   std::vector<float> length_ratios;  ///< [hair_count] mean length of the fibers over that of the center: how much more
                                      ///< hair there is than a straight bundle of it would hold; > 0
-  std::vector<Vec3> colors;          ///< [0] or [hair_count] mean linear reflectance, where the groom has colors
-  std::vector<Vec2> root_uv;         ///< [0] or [hair_count] mean texture coordinate of the roots, where the groom has them
+  std::vector<float> twists;  ///< [0] or [hair_count] radians a metre by which the fibers turn about the center from root to
+                              ///< tip, right-handed about it; none: 0. Finite
+  std::vector<Vec3> colors;   ///< [0] or [hair_count] mean linear reflectance, where the groom has colors
+  std::vector<Vec2> root_uv;  ///< [0] or [hair_count] mean texture coordinate of the roots, where the groom has them
 
   std::shared_ptr<const GuideAnimation> animation;  ///< of the guides, by pelage simulate; or null. Everything above is at rest
 
@@ -84,7 +86,8 @@ struct LodHierarchy {
 /// What to build. build_lod() throws an Error that names the setting and its range when one is outside it.
 struct LodSettings {
   std::uint32_t levels = 6;    ///< of thick hairs, at most, 1…16. Fewer where clusters run out of strands or memory is short
-  std::uint32_t guides = 256;  ///< clusters of which each gives a guide, 1…65536; at most one a strand (the paper's value)
+  std::uint32_t guides = 256;  ///< clusters of which each gives a guide, 1…65536; at most one a strand (the paper's value).
+                               ///< 0: the strands that the groom's own name as their guides (StrandSet::guide_id)
   float area_ratio = 4;   ///< by which the mean area of cross-sections falls from level to level, 1.5…64 (the paper's value)
   float covered = 0.95f;  ///< share of a cluster's fibers that its ellipse holds at every control point, 0.5…1
   float memory_share = 0.78f;  ///< of the groom's points and widths: finer levels that would take more are left out, 0.01…100

@@ -103,6 +103,9 @@ struct ThickSections {
   std::vector<float> fibers;       ///< [points] n_total, > 0: hairs that a line across the hair would meet in the whole section
   std::vector<float> diameters;    ///< [points] of one fiber, ≥ 0
   std::vector<float> spreads;      ///< [points] radians², variance of the fibers' directions about the hair's, along each axis
+  std::vector<float>
+      twists;  ///< [0] or [points] radians a metre by which the fibers turn about the hair's middle, right-handed
+               ///< toward the tip: that part of `spreads` is no chance; none: 0
   std::vector<std::uint8_t> levels;  ///< [strands] of the chain that each shows, 0 the coarsest
 };
 

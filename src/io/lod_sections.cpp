@@ -33,6 +33,7 @@ void for_each_array(Lod& lod, const LodHead& head, std::uint64_t strands, const 
   visit("lodminw", 2u, lod.minor_weights, points, false);
   visit("lodradii", 1u, lod.radii, points, false);
   visit("lodratio", 1u, lod.length_ratios, hairs, false);
+  visit("lodtwist", 1u, lod.twists, hairs, true);
   visit("lodcolor", 3u, lod.colors, hairs, true);
   visit("loduv", 2u, lod.root_uv, hairs, true);
 }

@@ -83,6 +83,7 @@ TEST(LodFile, KeepsEverything) {
   EXPECT_EQ(back.minor_weights, lod.minor_weights);
   EXPECT_EQ(back.radii, lod.radii);
   EXPECT_EQ(back.length_ratios, lod.length_ratios);
+  EXPECT_EQ(back.twists, lod.twists);
   EXPECT_EQ(back.colors, lod.colors);
   EXPECT_EQ(back.root_uv, lod.root_uv);
   validate(back, read_strands(path), "test");

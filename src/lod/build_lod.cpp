@@ -26,12 +26,22 @@ void check_range(const char* name, T value, T low, T high) {
 
 void check(const StrandSet& strands, const LodSettings& s) {
   check_range("levels", s.levels, 1u, LodHierarchy::kMostLevels);
-  check_range("guides", s.guides, 1u, 65536u);
+  check_range("guides", s.guides, 0u, 65536u);
   check_range("area_ratio", s.area_ratio, 1.5f, 64.f);
   check_range("covered", s.covered, 0.5f, 1.f);
   check_range("memory_share", s.memory_share, 0.01f, 100.f);
   validate(strands, "lod");
   if (strands.strand_count() == 0) throw Error("lod", "", "the groom has no strands", "give one that has");
+}
+
+/// Strand indices of the guides that `settings` ask for.
+std::vector<std::uint32_t> guides_of(const StrandSet& strands, const Stations& stations, const LodSettings& settings,
+                                     const Progress& progress) {
+  if (settings.guides > 0) return choose_guides(stations, settings.guides, settings.seed, progress);
+  std::vector<std::uint32_t> guides = own_guides(strands);
+  if (guides.empty())
+    throw Error("lod", "guides", "the strands of this groom name no guides among them", "give a number of guides");
+  return guides;
 }
 
 void set_guides(const Stations& stations, const std::vector<std::uint32_t>& strands, LodHierarchy& lod) {
@@ -56,8 +66,9 @@ void set_strand_weights(const Stations& stations, LodHierarchy& lod) {
 
 /// What a hair takes, its colors and texture coordinate included where the groom has them.
 std::size_t bytes_of_hair(const StrandSet& set) {
-  return sizeof(ThickHair) + sizeof(Vec2) + sizeof(float) + kPoints * (3 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(float)) +
-         (set.colors.empty() ? 0 : sizeof(Vec3)) + (set.root_uv.empty() ? 0 : sizeof(Vec2));
+  return sizeof(ThickHair) + sizeof(Vec2) + 2 * sizeof(float) +
+         kPoints * (3 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(float)) + (set.colors.empty() ? 0 : sizeof(Vec3)) +
+         (set.root_uv.empty() ? 0 : sizeof(Vec2));
 }
 
 /// Levels until there are as many as asked for, nothing is left to divide, or the next one would take too much memory.
@@ -88,7 +99,7 @@ class HairWriter {
   HairWriter(const StrandSet& set, const Stations& stations, const LodSettings& settings, LodHierarchy& lod)
       : set_(set), stations_(stations), settings_(settings), lod_(lod) {
     const std::size_t n = lod.hair_count();
-    lod.weights.resize(n), lod.length_ratios.resize(n);
+    lod.weights.resize(n), lod.length_ratios.resize(n), lod.twists.resize(n);
     lod.centers.resize(n * kPoints), lod.major.resize(n * kPoints), lod.minor.resize(n * kPoints);
     lod.major_weights.resize(n * kPoints), lod.minor_weights.resize(n * kPoints), lod.radii.resize(n * kPoints);
     lod.colors.resize(set.colors.empty() ? 0 : n), lod.root_uv.resize(set.root_uv.empty() ? 0 : n);
@@ -98,6 +109,7 @@ class HairWriter {
     const ThickHair& hair = lod_.hairs[h];
     const std::span<const std::uint32_t> strands(&lod_.order[hair.first_strand], hair.fibers);
     auto sections = fit_cross_sections(stations_, strands, settings_.covered, true);
+    lod_.twists[h] = twist_of(stations_, strands, sections);
     keep_widths(sections);
     std::array<Vec3, kPoints> centers;
     lod_.weights[h] = mean_of(strands, [&](std::uint32_t s) { return lod_.strand_weights[s]; });
@@ -186,7 +198,7 @@ LodHierarchy build_lod(const StrandSet& strands, const LodSettings& settings, co
   check(strands, settings);
   LodHierarchy lod;
   const Stations stations = fit_stations(strands, progress);
-  set_guides(stations, choose_guides(stations, settings.guides, settings.seed, progress), lod);
+  set_guides(stations, guides_of(strands, stations, settings, progress), lod);
   group_by_prism(nearest_guides(stations, lod.guide_strands), lod);
   set_strand_weights(stations, lod);
   add_levels(strands, stations, settings, progress, lod);

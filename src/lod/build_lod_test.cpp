@@ -260,10 +260,52 @@ TEST(BuildLod, CurlsThatControlPointsCannotFollowAreInside) {
   EXPECT_GT(lod.length_ratios[0], 2);  // the coil is longer than the line along it
 }
 
+/// Fibers that turn about a line `turns` times on its whole length of 0.1 m; bent: the line is an arc.
+StrandSet twisted(float turns, bool bent) {
+  StrandSet set;
+  set.widths = {2e-5f}, set.offsets = {0};
+  constexpr int kFibers = 60, kSamples = 64;
+  for (std::uint32_t i = 0; i < kFibers; ++i) {
+    Rng rng(5, i);
+    const float radius = 4e-4f * std::sqrt(rng.uniform()), phase = 6.2831853f * rng.uniform();
+    for (int j = 0; j < kSamples; ++j) {
+      const float t = static_cast<float>(j) / (kSamples - 1), angle = phase + 6.2831853f * turns * t,
+                  x = radius * std::cos(angle), y = radius * std::sin(angle);
+      const float a = bent ? 2 * t : 0;  // in a plane, so that side and binormal turn about the line not at all
+      if (bent) set.points.emplace_back((0.05f - x) * std::cos(a), (0.05f - x) * std::sin(a), y);
+      else set.points.emplace_back(x, y, 0.1f * t);
+    }
+    set.offsets.push_back(static_cast<std::uint32_t>(set.points.size()));
+  }
+  return set;
+}
+
+TEST(BuildLod, TwistIsHowFastFibersTurn) {
+  for (const bool bent : {false, true})
+    for (const float turns : {0.f, 1.5f, -3.f}) {
+      const LodHierarchy lod = build_lod(twisted(turns, bent), {.levels = 1, .guides = 1, .memory_share = 100});
+      ASSERT_EQ(lod.hair_count(), 1u);
+      const float expected = 6.2831853f * turns / 0.1f;
+      EXPECT_NEAR(lod.twists[0], expected, 0.03f * std::fabs(expected) + 0.3f) << turns << bent;
+    }
+}
+
+TEST(BuildLod, GuidesCanBeThoseThatStrandsName) {
+  StrandSet set = groom(HairStyle::kWavy, 300);
+  for (std::size_t s = 0; s < set.strand_count(); ++s)
+    set.strand_id[s] = static_cast<std::uint32_t>(1000 + s), set.guide_id[s] = static_cast<std::int32_t>(1000 + s / 50 * 50);
+  EXPECT_THAT(build_lod(set, {.levels = 1, .guides = 0}).guide_strands, testing::ElementsAre(0, 50, 100, 150, 200, 250));
+  set.strand_id.clear();
+  set.guide_id.assign(set.strand_count(), 7), set.guide_id[0] = 2, set.guide_id[1] = -1;
+  EXPECT_THAT(build_lod(set, {.levels = 1, .guides = 0}).guide_strands, testing::ElementsAre(2, 7));
+}
+
 TEST(BuildLod, MistakesAreNamed) {
   const StrandSet set = groom(HairStyle::kStraight, 20);
   EXPECT_THROW(build_lod(set, {.levels = 0}), Error);
-  EXPECT_THROW(build_lod(set, {.guides = 0}), Error);
+  StrandSet without_guides = set;
+  without_guides.guide_id.clear();
+  EXPECT_THROW(build_lod(without_guides, {.guides = 0}), Error);
   EXPECT_THROW(build_lod(set, {.area_ratio = 1}), Error);
   EXPECT_THROW(build_lod(set, {.covered = 0.2f}), Error);
   EXPECT_THROW(build_lod(set, {.covered = NAN}), Error);

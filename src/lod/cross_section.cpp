@@ -156,6 +156,28 @@ std::array<CrossSection, kPoints> fit_cross_sections(const Stations& stations, s
   return sections;
 }
 
+float twist_of(const Stations& stations, std::span<const std::uint32_t> strands,
+               const std::array<CrossSection, kPoints>& sections) {
+  const std::array<Plane, kPoints> planes = planes_along(sections);
+  const auto place = [&](std::uint32_t s, std::size_t k) {
+    const Vec3 off = stations.strand(s)[k] - sections[k].center;
+    return Flat{static_cast<double>(dot(off, planes[k].u)), static_cast<double>(dot(off, planes[k].v))};
+  };
+  double turned = 0, way = 0;
+  for (std::size_t k = 0; k + 1 < kPoints; ++k) {
+    double along = 0, across = 0, squares = 0;  // as complex numbers, Σ conj(place)·(next place), and the sum of both squares
+    for (const std::uint32_t s : strands) {
+      const Flat a = place(s, k), b = place(s, k + 1);
+      along += a.x * b.x + a.y * b.y, across += a.x * b.y - a.y * b.x;
+      squares += a.x * a.x + a.y * a.y + b.x * b.x + b.y * b.y;
+    }
+    const double weight = std::hypot(along, across), moved = squares - 2 * along, explained = 2 * (weight - along);
+    if (moved > 0) turned += weight * std::atan2(across, along) * explained / moved;
+    way += weight * static_cast<double>(length(sections[k + 1].center - sections[k].center));
+  }
+  return way > 0 ? static_cast<float>(turned / way) : 0;
+}
+
 void put_longer_first(std::array<CrossSection, kPoints>& sections) {
   float longer = 0;
   for (const CrossSection& s : sections) longer += length(s.major) - length(s.minor);

@@ -28,6 +28,12 @@ std::array<CrossSection, LodHierarchy::kPoints> fit_cross_sections(const Station
                                                                    std::span<const std::uint32_t> strands, float covered,
                                                                    bool strays);
 
+/// Radians a metre by which the strands turn about the centers of `sections`, which are theirs, from root to tip, right-handed: the turn from control
+/// point to control point that fits all places best, those count more that are far from the center, times the share of how places move (squared) that
+/// it explains. 0 for one strand.
+float twist_of(const Stations& stations, std::span<const std::uint32_t> strands,
+               const std::array<CrossSection, LodHierarchy::kPoints>& sections);
+
 /// Exchanges the axes of all sections, by a quarter turn, where `major` is the shorter one on the mean.
 void put_longer_first(std::array<CrossSection, LodHierarchy::kPoints>& sections);
 

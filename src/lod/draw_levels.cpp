@@ -23,7 +23,7 @@ class ThickHairPen {
   void operator()(std::uint32_t h, std::size_t level, const LodRun& run, Pieces& out) const {
     const HairWidths bands = hair_widths(lod_, eye_, h);
     const float fibers = static_cast<float>(lod_.hairs[h].fibers) * crossing_ratio(lod_.length_ratios[h]),
-                spread = direction_variance(lod_.length_ratios[h]);
+                spread = direction_variance(lod_.length_ratios[h]), twist = lod_.twists.empty() ? 0 : lod_.twists[h];
     ThickSections& sections = out.sections;
     for (std::size_t k = run.first; k <= run.last; ++k) {
       const std::size_t i = std::size_t{h} * kPoints + k;
@@ -32,6 +32,7 @@ class ThickHairPen {
       out.hairs.widths.push_back(covered_width(bands.metres[k], fiber, fibers));
       sections.major.push_back(lod_.major[i]), sections.minor.push_back(lod_.minor[i]);
       sections.fibers.push_back(fibers), sections.diameters.push_back(fiber), sections.spreads.push_back(spread);
+      sections.twists.push_back(twist);
     }
     sections.levels.push_back(static_cast<std::uint8_t>(level));
     append_attributes(lod_, h, set_, out.hairs);

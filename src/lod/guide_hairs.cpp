@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <unordered_set>
 
 #include "core/k_means.h"
 #include "core/parallel.h"
@@ -62,6 +63,14 @@ std::vector<std::uint32_t> choose_guides(const Stations& stations, std::uint32_t
   std::vector<std::uint32_t> guides = medoids(stations, label, *std::max_element(label.begin(), label.end()) + 1);
   std::sort(guides.begin(), guides.end());
   shared.add(1);
+  return guides;
+}
+
+std::vector<std::uint32_t> own_guides(const StrandSet& strands) {
+  const std::unordered_set<std::int64_t> named(strands.guide_id.begin(), strands.guide_id.end());
+  std::vector<std::uint32_t> guides;
+  for (std::uint32_t s = 0; s < strands.strand_count(); ++s)
+    if (named.contains(strands.strand_id.empty() ? s : strands.strand_id[s])) guides.push_back(s);
   return guides;
 }
 

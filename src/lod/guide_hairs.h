@@ -18,6 +18,9 @@ using Prism = std::array<std::uint32_t, 3>;
 std::vector<std::uint32_t> choose_guides(const Stations& stations, std::uint32_t count, std::uint32_t seed,
                                          const Progress& progress);
 
+/// Those strands that others name as their guide (StrandSet::guide_id). Strand indices, ascending; none where there are no such.
+std::vector<std::uint32_t> own_guides(const StrandSet& strands);
+
 /// The three guides nearest to every strand by D, of equal ones the first; with fewer than three guides the last stands in for
 /// those that are missing. [strand_count]
 std::vector<Prism> nearest_guides(const Stations& stations, const std::vector<std::uint32_t>& guides);

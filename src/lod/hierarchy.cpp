@@ -54,6 +54,7 @@ class Rules {
       require_size(*array, n * kPoints, "weights of corners");
     require_size(lod_.radii, n * kPoints, "radii");
     require_size(lod_.length_ratios, n, "length ratios");
+    if (!lod_.twists.empty()) require_size(lod_.twists, n, "twists");
     if (!lod_.colors.empty()) require_size(lod_.colors, n, "colors");
     if (!lod_.root_uv.empty()) require_size(lod_.root_uv, n, "root uv");
   }
@@ -123,6 +124,8 @@ class Rules {
     require(
         std::all_of(lod_.length_ratios.begin(), lod_.length_ratios.end(), [](float x) { return x > 0 && x <= kMaxCoordinate; }),
         "length ratios", "one is not positive and finite");
+    require(std::all_of(lod_.twists.begin(), lod_.twists.end(), [](float x) { return std::fabs(x) <= kMaxCoordinate; }),
+            "twists", "one is not finite");
     const auto color = [](Vec3 c) {
       return std::fmin(std::fmin(c.x, c.y), c.z) >= 0 && std::fmax(std::fmax(c.x, c.y), c.z) <= 1.00001f && is_finite(c);
     };
@@ -160,8 +163,8 @@ std::size_t resident_bytes(const LodHierarchy& lod) {
   return bytes_of(lod.guide_strands) + bytes_of(lod.guides) + bytes_of(lod.prisms) + bytes_of(lod.order) +
          bytes_of(lod.strand_weights) + bytes_of(lod.level_offsets) + bytes_of(lod.hairs) + bytes_of(lod.weights) +
          bytes_of(lod.centers) + bytes_of(lod.major) + bytes_of(lod.minor) + bytes_of(lod.major_weights) +
-         bytes_of(lod.minor_weights) + bytes_of(lod.radii) + bytes_of(lod.length_ratios) + bytes_of(lod.colors) +
-         bytes_of(lod.root_uv);
+         bytes_of(lod.minor_weights) + bytes_of(lod.radii) + bytes_of(lod.length_ratios) + bytes_of(lod.twists) +
+         bytes_of(lod.colors) + bytes_of(lod.root_uv);
 }
 
 float mean_width(float a, float b) {

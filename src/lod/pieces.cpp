@@ -60,7 +60,8 @@ void reserve(std::size_t points, std::size_t curves, Pieces& pieces) {
   StrandSet& hairs = pieces.hairs;
   ThickSections& sections = pieces.sections;
   for (std::vector<Vec3>* v : {&hairs.points, &sections.major, &sections.minor}) reserve(points, *v);
-  for (std::vector<float>* v : {&hairs.widths, &sections.fibers, &sections.diameters, &sections.spreads}) reserve(points, *v);
+  for (std::vector<float>* v : {&hairs.widths, &sections.fibers, &sections.diameters, &sections.spreads, &sections.twists})
+    reserve(points, *v);
   hairs.offsets.reserve(curves + 1), hairs.strand_id.reserve(curves), sections.levels.reserve(curves);
 }
 
@@ -87,13 +88,15 @@ Pieces join(const std::vector<Pieces>& parts) {
     gather(
         sections.*member, [&](const Pieces& p) -> auto& { return p.sections.*member; });
   };
-  const std::function<void()> arrays[] = {[&] { strands(&StrandSet::points); },     [&] { places(&ThickSections::major); },
-                                          [&] { places(&ThickSections::minor); },   [&] { strands(&StrandSet::widths); },
-                                          [&] { places(&ThickSections::fibers); },  [&] { places(&ThickSections::diameters); },
-                                          [&] { places(&ThickSections::spreads); }, [&] { places(&ThickSections::levels); },
-                                          [&] { strands(&StrandSet::colors); },     [&] { strands(&StrandSet::transparency); },
-                                          [&] { strands(&StrandSet::root_uv); },    [&] { strands(&StrandSet::strand_id); },
-                                          [&] { strands(&StrandSet::guide_id); },   [&] { strands(&StrandSet::group); }};
+  const std::function<void()> arrays[] = {
+      [&] { strands(&StrandSet::points); },       [&] { places(&ThickSections::major); },
+      [&] { places(&ThickSections::minor); },     [&] { strands(&StrandSet::widths); },
+      [&] { places(&ThickSections::fibers); },    [&] { places(&ThickSections::diameters); },
+      [&] { places(&ThickSections::spreads); },   [&] { places(&ThickSections::twists); },
+      [&] { places(&ThickSections::levels); },    [&] { strands(&StrandSet::colors); },
+      [&] { strands(&StrandSet::transparency); }, [&] { strands(&StrandSet::root_uv); },
+      [&] { strands(&StrandSet::strand_id); },    [&] { strands(&StrandSet::guide_id); },
+      [&] { strands(&StrandSet::group); }};
   parallel_for(std::size(arrays), 1, [&](std::size_t i, std::size_t) { arrays[i](); });
   return all;
 }

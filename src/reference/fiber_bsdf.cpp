@@ -82,9 +82,9 @@ FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, Vec3 tang
 
 FiberBsdf::FiberBsdf(const FiberMaterial& material, Vec3 strand_color, const ThickPlace& thick, Vec3 to_eye,
                      const kernel::ScatterBundle& others, Vec3 met)
-    : FiberBsdf(thick.tangent, to_eye, [&] {
-        FiberView view = view_of(material, strand_color, thick.tangent, to_eye);
-        view.bundle = others, view.place = place_in(thick, others, to_eye, met), view.spread = thick.spread;
+    : FiberBsdf(thick.fiber_tangent(met), to_eye, [&] {
+        FiberView view = view_of(material, strand_color, thick.fiber_tangent(met), to_eye);
+        view.bundle = others, view.place = place_in(thick, others, to_eye, met), view.spread = thick.fiber_spread();
         return view;
       }()) {}
 

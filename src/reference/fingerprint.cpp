@@ -78,7 +78,7 @@ class Fingerprint {
     if (only) add_array(*only);
     if (sections)
       add_array(sections->major), add_array(sections->minor), add_array(sections->fibers), add_array(sections->diameters),
-          add_array(sections->spreads), add_array(sections->levels);
+          add_array(sections->spreads), add_array(sections->twists), add_array(sections->levels);
   }
   void add_one(const TriangleMesh& m) { add_array(m.positions), add_array(m.normals), add_array(m.uv), add_array(m.triangles); }
   void add_one(const MeshInstance& instance) {

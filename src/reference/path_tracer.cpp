@@ -170,10 +170,10 @@ Vertex PathTracer::State::thick_vertex(const SceneHit& hit, const Ray& ray) cons
   const GroomInstance& g = grooms[hit.object];
   const auto scattering = [&](const FiberMaterial& m) {
     return aggregate ? FiberBsdf(m, color_of(hit), place, to_eye, other_fibers(place, to_eye), met)
-                     : FiberBsdf(m, color_of(hit), place.tangent, to_eye, 0);
+                     : FiberBsdf(m, color_of(hit), place.fiber_tangent(met), to_eye, 0);
   };
   return {met,
-          place.tangent,
+          place.fiber_tangent(met),
           {},
           0,
           has_finish_maps(g) ? scattering(FiberMaterial(finished(g.material, finish_of(hit)))) : scattering(fibers[hit.object]),

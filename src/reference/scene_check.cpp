@@ -47,7 +47,7 @@ void check_sections(const GroomInstance& g, const std::string& where) {
   const ThickSections& s = *g.sections;
   const std::size_t points = g.strands->point_count();
   if (s.major.size() != points || s.minor.size() != points || s.fibers.size() != points || s.diameters.size() != points ||
-      s.spreads.size() != points)
+      s.spreads.size() != points || (!s.twists.empty() && s.twists.size() != points))
     throw Error(where, "sections", fmt::format("not as many as the {} points", points), "give every point a section");
   if (g.strands->basis == CurveBasis::kBezier)
     throw Error(where, "sections", "thick hairs are no Bézier curves", "use a basis with a point for every span");
@@ -58,6 +58,8 @@ void check_sections(const GroomInstance& g, const std::string& where) {
       throw Error(where, place, fmt::format("{} fibers", s.fibers[i]), "more than 0");
     if (!(s.spreads[i] >= 0) || !finite(s.spreads[i]))
       throw Error(where, place, fmt::format("a variance of {}", s.spreads[i]), "0 or more");
+    if (!s.twists.empty() && !finite(s.twists[i]))
+      throw Error(where, place, fmt::format("a twist of {}", s.twists[i]), "a number");
     if (!(s.diameters[i] >= 0) || !finite(s.diameters[i]))
       throw Error(where, place, fmt::format("a fiber's diameter of {}", s.diameters[i]), "0 or more");
   }

@@ -49,11 +49,11 @@ void ThickCurves::add_strand(const GroomInstance& groom, std::uint32_t strand) {
       const auto between = [&](const auto& v) { return i < last ? v[i] + (v[i + 1] - v[i]) * t : v[i]; };
       const bool tip = i == last && i > begin;
       const Vec3 along = tip ? p1 - p0 : curve(basis_derivative(CurveBasis::kCatmullRom, t));
-      rings_.push_back({transform_point(groom.transform, curve(basis_weights(CurveBasis::kCatmullRom, t))),
-                        normalize(transform_vector(groom.transform, along)),
-                        transform_vector(groom.transform, between(all.major)),
-                        transform_vector(groom.transform, between(all.minor)), between(all.fibers),
-                        between(all.diameters) * fiber_scale, between(all.spreads)});
+      rings_.push_back(
+          {transform_point(groom.transform, curve(basis_weights(CurveBasis::kCatmullRom, t))),
+           normalize(transform_vector(groom.transform, along)), transform_vector(groom.transform, between(all.major)),
+           transform_vector(groom.transform, between(all.minor)), between(all.fibers), between(all.diameters) * fiber_scale,
+           between(all.spreads), all.twists.empty() ? 0 : between(all.twists) / similarity_scale(groom.transform)});
       if (i < last) strand_of_.push_back(strand);
     }
   }
@@ -162,7 +162,7 @@ ThickPlace ThickCurves::place(std::size_t piece, float share) const {
   return {between(r[0].center, r[1].center), normalize(between(r[0].tangent, r[1].tangent)),
           between(r[0].major, r[1].major),   between(r[0].minor, r[1].minor),
           between(r[0].fibers, r[1].fibers), 0.5f * between(r[0].diameter, r[1].diameter),
-          between(r[0].spread, r[1].spread)};
+          between(r[0].spread, r[1].spread), between(r[0].twist, r[1].twist)};
 }
 
 }  // namespace pelage

@@ -4,6 +4,7 @@
 
 #include <pelage/scene.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -23,6 +24,14 @@ struct ThickPlace {
   float fibers = 1;    ///< n_total
   float radius = 0;    ///< of one fiber
   float spread = 0;    ///< radians², ThickSections::spreads
+  float twist = 0;     ///< radians a metre, ThickSections::twists
+
+  /// Mean direction of the fibers at `met`, a place in the bundle: twisted ones wind about the axis. Unit length.
+  Vec3 fiber_tangent(Vec3 met) const { return normalize(tangent + cross(tangent, met - axis) * twist); }
+  /// Radians², variance of their directions about that, along each axis: what of `spread` is no twist of an evenly filled ellipse.
+  float fiber_spread() const {
+    return std::max(spread - 0.125f * twist * twist * (dot(major, major) + dot(minor, minor)), 0.f);
+  }
 };
 
 /// All thick hairs of a groom with GroomInstance::sections, world space. Queries are const and thread-safe.
@@ -63,7 +72,7 @@ class ThickCurves {
   /// A cross-section between two pieces.
   struct Ring {
     Vec3 center, tangent, major, minor;
-    float fibers, diameter, spread;
+    float fibers, diameter, spread, twist;
   };
   struct Chord {
     float near, far;

@@ -83,6 +83,59 @@ TEST(ThickTrace, OneThickHairIsItsFibers) {
   EXPECT_NEAR(sum_bundle, sum_fibers, 0.03 * sum_fibers);
 }
 
+constexpr float kTwist = 36;  ///< radians a metre: fibers at the hull lean by 20°
+
+/// The same fibers, turning about the y axis.
+Scene twisted_fibers_scene(std::uint64_t seed) {
+  const FiberCluster cluster({kFibers, kFiber, kWide, kWide}, seed);
+  std::vector<std::vector<Vec3>> all(kFibers);
+  for (std::uint32_t i = 0; i < kFibers; ++i)
+    for (float y = -0.06f; y < 0.0601f; y += 0.004f) {
+      const Vec2 p = cluster.center(i);
+      const float c = std::cos(kTwist * y), s = std::sin(kTwist * y);  // right-handed about +y: z turns to x
+      all[i].emplace_back(c * p.x + s * p.y, y, c * p.y - s * p.x);
+    }
+  return kit::scene_of(kit::strands(all, 2 * kFiber), 2 * kWide, 16);
+}
+
+Scene twisted_bundle_scene(float twist) {
+  Scene scene = kit::scene_of(nullptr, 2 * kWide, 16);
+  scene.grooms[0] =
+      kit::thick_hair({{0, -0.06f, 0}, {0, 0.06f, 0}},
+                      {{kWide, 0, 0}, {0, 0, kWide}, kFibers, kFiber, 0.25f * kTwist * kTwist * kWide * kWide, twist});
+  return scene;
+}
+
+/// What of the scene stands on the side of +x.
+Scene right_half(Scene scene) {
+  scene.camera.eye.x += kWide, scene.camera.target.x += kWide;
+  return scene;
+}
+
+// Of fibers that wind about the middle of their ply, those on one side lean toward the eye and shine under a light from above, those on the
+// other away from it, under one from below. A thick hair that knows its twist does alike.
+TEST(ThickTrace, ATwistedThickHairIsItsFibers) {
+  constexpr int kClusters = 12;
+  HairMaterial material = colored(8);
+  material.cuticle_tilt = 0;  // what the light's inclination tells apart is the twist
+  std::vector<double> fibers, with, without;
+  for (const float inclination : {-0.6f, 0.6f}) {
+    Light light;
+    light.direction = {0, -std::sin(inclination), -std::cos(inclination)}, light.intensity = {1, 1, 1};
+    const auto seen = [&](const Scene& scene, std::uint32_t samples) {
+      return look(right_half(scene), material, light, samples).light;
+    };
+    fibers.push_back(0);
+    for (std::uint64_t seed = 0; seed < kClusters; ++seed) fibers.back() += seen(twisted_fibers_scene(seed), 24) / kClusters;
+    with.push_back(seen(twisted_bundle_scene(kTwist), 192)), without.push_back(seen(twisted_bundle_scene(0), 192));
+  }
+  std::printf("light from above over light from below: fibers %.3f, twisted %.3f, untwisted %.3f\n", fibers[1] / fibers[0],
+              with[1] / with[0], without[1] / without[0]);
+  EXPECT_NEAR(without[1] / without[0], 1, 0.05);
+  EXPECT_GT(std::fabs(std::log(fibers[1] / fibers[0])), 0.3);
+  EXPECT_NEAR(std::log(with[1] / with[0]), std::log(fibers[1] / fibers[0]), 0.25 * std::fabs(std::log(fibers[1] / fibers[0])));
+}
+
 /// A ball of bent thick hairs, one across the other.
 Scene ball_of_bundles() {
   const std::shared_ptr<StrandSet> curves = kit::ball(300, 0.1f, 1e-3f);

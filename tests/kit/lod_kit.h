@@ -22,6 +22,7 @@ inline LodHierarchy small_lod(const StrandSet& set) {
   lod.hairs = {{0, n, kNone, 1, 2, 0}, {0, 1, 0, kNone, 0, 0}, {1, n - 1, 0, kNone, 0, 0}};
   for (std::uint32_t h = 0; h < 3; ++h) {
     lod.weights.emplace_back(0.5f, 0.25f), lod.length_ratios.push_back(1.25f);
+    lod.twists.push_back(300.f - 400.f * static_cast<float>(h));
     for (std::uint32_t k = 0; k < kPoints; ++k) {
       const auto x = static_cast<float>(h * kPoints + k);
       lod.centers.emplace_back(0.01f * x, -0.02f * x, 0.001f * x);

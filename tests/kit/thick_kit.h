@@ -15,6 +15,7 @@ struct Bundle {
   Vec3 major, minor;
   float fibers = 1, radius = 0;
   float spread = 0;  ///< radians²
+  float twist = 0;   ///< radians a metre
 };
 
 /// Thick hairs of the given curves. turned: the minor axis lies in the plane of the curve, across it, whatever `minor` says but its length.
@@ -28,7 +29,7 @@ inline GroomInstance thick_hairs(const std::vector<std::vector<Vec3>>& curves, c
       sections->major.push_back(bundle.major);
       sections->minor.push_back(turned ? normalize(cross(bundle.major, along)) * length(bundle.minor) : bundle.minor);
       sections->fibers.push_back(bundle.fibers), sections->diameters.push_back(2 * bundle.radius);
-      sections->spreads.push_back(bundle.spread);
+      sections->spreads.push_back(bundle.spread), sections->twists.push_back(bundle.twist);
     }
   groom.sections = sections;
   return groom;
