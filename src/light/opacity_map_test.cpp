@@ -9,6 +9,7 @@
 
 #include "core/rng.h"
 #include "frame/light_lookup.h"
+#include "kernel/scalar.h"
 #include "light/light_view.h"
 
 namespace pelage {
@@ -211,6 +212,22 @@ TEST(OpacityMap, SameBitsForAnyThreadsAndInstructionSet) {
   }
   set_isa("");
   set_thread_count(0);
+}
+
+// Strands across a plane, one crossing every 5 widths: those on both of two ways of `length` widths that part by `angle`, counted on a grid.
+TEST(Opacity, SharedCrossingsAreThoseOnBothWays) {
+  constexpr float kPerWidth = 0.2f, kStep = 0.01f;
+  for (const float length : {2.f, 8.f, 30.f}) {
+    for (const float angle : {0.f, 0.02f, 0.1f, 0.3f}) {
+      double area = 0;
+      for (float along = 0.5f * kStep; along < length; along += kStep)
+        for (float aside = -0.5f + 0.5f * kStep; aside < 0.5f; aside += kStep)
+          if (std::fabs(aside * std::cos(angle) - along * std::sin(angle)) < 0.5f) area += static_cast<double>(kStep * kStep);
+      const float parting = 2 * std::sin(0.5f * angle) / kPerWidth;
+      EXPECT_NEAR(kernel::light_shared_crossings(kPerWidth * length, parting), kPerWidth * area, 0.02)
+          << length << " widths, " << angle;
+    }
+  }
 }
 
 TEST(OpacityMap, NoStrandsGiveAnEmptyMap) {

@@ -28,8 +28,9 @@ struct ShadeBatch {
   alignas(64) Lanes absorb_r, absorb_g, absorb_b;  ///< per fiber radius
   alignas(64) Lanes depth_shift{};                 ///< strands between it and every light that are not there after all
   alignas(64) Lanes beta_longitudinal{}, beta_azimuthal{}, tilt{};  ///< of grooms with maps of them; see HairMaterial
-  alignas(64) Lanes table{};  ///< of those: where their ForwardAttenuationTable begins, a whole number
-  alignas(64) Lanes fibers{}, fiber_radius{}, half_width{}, half_depth{}, lean{};  ///< of thick hairs: SeenBundle
+  alignas(64) Lanes table{};         ///< of those: where their ForwardAttenuationTable begins, a whole number
+  alignas(64) Lanes fiber_radius{};  ///< metres; 0: not known, so that light is what it is where the eye does not look along it
+  alignas(64) Lanes fibers{}, half_width{}, half_depth{}, lean{};  ///< of thick hairs: SeenBundle
   /// share of the probe's light that arrives, 0…1; 1 where none is baked
   alignas(64) Lanes occlusion = ones();
   alignas(64) Lanes r, g, b;  ///< result: radiance, W/(m²·sr)

@@ -31,7 +31,17 @@ PELAGE_LANES_FN ShadeFootprint shade_footprint(const MapConstants& m, Vec3 c, fl
   return f;
 }
 
-PELAGE_LANES_FN Float shade_texel_crossings(const MapConstants& m, Float x, Float y, Float z) {
+// Strands between a light and a place, and how many more there are each metre farther from the light.
+struct ShadeCrossings {
+  Float n, slope;
+};
+
+PELAGE_LANES_FN ShadeCrossings shade_mix(ShadeCrossings a, ShadeCrossings b, Float t) {
+  const Float s = Float(1.0f) - t;
+  return {a.n * s + b.n * t, a.slope * s + b.slope * t};
+}
+
+PELAGE_LANES_FN ShadeCrossings shade_texel_crossings(const MapConstants& m, Float x, Float y, Float z) {
   const Float per_block(1.f / OpacityMap::kOriginBlock);
   const Int block = to_int(floor(y * per_block)) * Int(m.origin_width) + to_int(floor(x * per_block));
   const Float d = max(z - gather(m.depth, block), Float(0.0f));
@@ -45,20 +55,21 @@ PELAGE_LANES_FN Float shade_texel_crossings(const MapConstants& m, Float x, Floa
   const Int slot = (to_int(y) * Int(m.width) + to_int(x)) * Int(OpacityMap::kLayers) + to_int(layer);
   const Mask first = layer == Float(0.0f);
   const Float after = to_float(gather(m.crossings, slot));
-  const Float before = to_float(gather(m.crossings, select(first, slot, slot - Int(1))));
-  return light_crossings(d, begin, end, select(first, Float(0.0f), before), after);
+  const Float before = select(first, Float(0.0f), to_float(gather(m.crossings, select(first, slot, slot - Int(1)))));
+  return {light_crossings(d, begin, end, before, after), (after - before) / (end - begin)};
 }
 
 // Strands between the light and each place; see crossings_at().
-PELAGE_LANES_FN Float shade_crossings(const MapConstants& m, Vec3 p) {
-  if (m.crossings == nullptr) return Float(0.0f);
+PELAGE_LANES_FN ShadeCrossings shade_crossings(const MapConstants& m, Vec3 p) {
+  if (m.crossings == nullptr) return {Float(0.0f), Float(0.0f)};
   const Vec3 c = shade_to_camera(m, p);
   const ShadeFootprint f = shade_footprint(m, c, 0);
-  const Float x1 = f.x + Float(1.0f), y1 = f.y + Float(1.0f), left = Float(1.0f) - f.right;
-  const Float top = shade_texel_crossings(m, f.x, f.y, c.z) * left + shade_texel_crossings(m, x1, f.y, c.z) * f.right;
-  const Float bottom = shade_texel_crossings(m, f.x, y1, c.z) * left + shade_texel_crossings(m, x1, y1, c.z) * f.right;
-  const Float n = top * (Float(1.0f) - f.lower) + bottom * f.lower;
-  return select(f.inside, n * Float(OpacityMap::kCrossingUnit), Float(0.0f));
+  const auto row = [&](Float y) {
+    return shade_mix(shade_texel_crossings(m, f.x, y, c.z), shade_texel_crossings(m, f.x + Float(1.0f), y, c.z), f.right);
+  };
+  const ShadeCrossings found = shade_mix(row(f.y), row(f.y + Float(1.0f)), f.lower);
+  const Float unit = select(f.inside, Float(OpacityMap::kCrossingUnit), Float(0.0f));
+  return {found.n * unit, found.slope * unit};
 }
 
 // Share of the light that the meshes let pass; see mesh_visibility().
@@ -111,6 +122,7 @@ struct ShadePlace {
   ScatterBundle bundle;      // of thick hairs: of the other fibers, which shade the one that is seen
   Float lean;                // of thick hairs: variance of the fibers' directions
   Float depth_shift;         // crossings
+  Float width;               // of the fiber, metres; 0: not known
   Float table;               // where its table of forward attenuation begins
 };
 
@@ -152,6 +164,7 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   s.table = own(batch.table, 0);
   const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
   s.depth_shift = load(batch.depth_shift.data() + i);
+  s.width = Float(2.0f) * load(batch.fiber_radius.data() + i);
   if (k.bundled) {
     const Float others = max(load(batch.fibers.data() + i) - Float(1.0f), Float(0.0f));
     s.lean = load(batch.lean.data() + i);
@@ -261,30 +274,52 @@ PELAGE_LANES_FN Vec3 shade_forward_attenuation(const std::vector<float>& tables,
 
 // The way of light to a place.
 struct ShadeWay {
-  Float outside;      // mean number of hairs on it, of thick hairs without those of the bundle that the place stands for
+  Float outside;  // mean number of hairs on it that the eye does not look past too; of thick hairs without those of the bundle
   ScatterWay within;  // of thick hairs: past the others of the bundle,
   Float alone;        // and how far the bundle is alone: its share of the hairs here, 0…1
 };
 
-// What a bundle adds to the crossings of a map, at its middle: half of its fibers, over its width or a texel, of which a look-up
-// blends two.
-PELAGE_LANES_FN Float shade_own_crossings(const MapConstants& m, const ShadePlace& s, ScatterWay within) {
+// What one fiber adds to the crossings of a map where it lies: its width over what the map spreads it over, a texel, of which a look-up
+// blends two, or the bundle that it is drawn in.
+PELAGE_LANES_FN Float shade_grain(const ShadeConstants& k, const MapConstants& m, const ShadePlace& s, ScatterWay within) {
   if (m.crossings == nullptr) return Float(0.0f);
   const Float texel =
       (m.perspective ? max(shade_to_camera(m, s.position).z, Float(m.near_plane)) : Float(1.0f)) / Float(m.focal);
-  const Float over_width = within.longest * Float(0.785398163f), over_texel = s.bundle.reach * Float(1.5f) / texel;
-  return Float(0.5f) * min(over_width, over_texel);
+  const Float spread = texel * Float(1.33333333f);
+  return min(s.width / (k.bundled ? max(spread, Float(2.0f) * within.seen) : spread), Float(1.0f));
+}
+
+// What the fibers of a bundle add to the crossings of a map at its middle: half of them are nearer to the light.
+PELAGE_LANES_FN Float shade_own_crossings(const ShadePlace& s, Float grain) {
+  return s.bundle.reach / max(s.width, Float(1.0e-9f)) * grain;
+}
+
+// By how many widths of a fiber the ways to eye and light part, across the fiber, where the light's has one crossing more.
+PELAGE_LANES_FN Float shade_parting(const ShadePlace& s, const LightConstants& light, Float slope, ShadeAngles a) {
+  constexpr float kLeast2 = 1e-6f;  // what a cosine next to 1 can tell
+  const Float apart = sqrt(max(Float(2.0f) - Float(2.0f) * a.cos_phi * Float(light.mean_cosine), Float(kLeast2)));
+  return apart * a.cos_i / max(slope * s.width, Float(1.0e-9f));
+}
+
+// Of n crossings, those that the eye looks past too, but for what the map knows of them: where it is fine, a place that is seen lies
+// in a texel with fewer strands. A texel shares its strands with the eye as a strand as wide as the texel would.
+PELAGE_LANES_FN Float shade_seen_past(Float n, Float parting, Float grain) {
+  return light_shared_crossings(n, parting) - grain * light_shared_crossings(n, parting * grain);
 }
 
 PELAGE_LANES_FN ShadeWay shade_way(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
   ShadeWay w{};
-  const Float n = max(shade_crossings(light.opacity, s.position) - s.depth_shift, Float(0.0f));
-  w.outside = n;
-  if (!k.bundled) return w;
-  w.within = scatter_bundle_way(s.bundle, a.cos_phi * Float(light.mean_cosine));
-  const Float own = shade_own_crossings(light.opacity, s, w.within);
-  w.alone = own / max(max(n, own), Float(1.0e-6f));
-  w.outside = max(n - own * w.alone, Float(0.0f)) * scatter_bundle_clumping(s.bundle);
+  const ShadeCrossings found = shade_crossings(light.opacity, s.position);
+  const Float n = max(found.n - s.depth_shift, Float(0.0f)), parting = shade_parting(s, light, found.slope, a);
+  if (k.bundled) w.within = scatter_bundle_way(s.bundle, a.cos_phi * Float(light.mean_cosine));
+  const Float grain = shade_grain(k, light.opacity, s, w.within);
+  Float others = n;
+  if (k.bundled) {
+    const Float own = shade_own_crossings(s, grain);
+    w.alone = own / max(max(n, own), Float(1.0e-6f));
+    others = max(n - own * w.alone, Float(0.0f));
+  }
+  w.outside = others - shade_seen_past(others, parting, grain);
   return w;
 }
 
@@ -294,18 +329,21 @@ PELAGE_LANES_FN Float shade_within(const ShadePlace& s, ShadeWay w, Float loss) 
   return Float(1.0f) + (scatter_bundle_visible(s.bundle, w.within, loss) - Float(1.0f)) * w.alone;
 }
 
+// Share of the light that comes through where every hair on its way takes the share `loss`.
+PELAGE_LANES_FN Float shade_through(const ShadeConstants& k, const ShadePlace& s, ShadeWay w, Float loss) {
+  if (!k.bundled) return scatter_dual_direct(loss * w.outside);
+  return scatter_dual_direct(loss * w.outside * scatter_bundle_clumping(s.bundle, loss)) * shade_within(s, w, loss);
+}
+
 // Share of the light that meets no hair on its way.
 PELAGE_LANES_FN Float shade_direct(const ShadeConstants& k, const ShadePlace& s, ShadeWay w) {
-  const Float direct = scatter_dual_direct(w.outside);
-  return k.bundled ? direct * shade_within(s, w, Float(1.0f)) : direct;
+  return shade_through(k, s, w, Float(1.0f));
 }
 
 // Share of the light that comes through where every hair on the way keeps the share `each`.
 PELAGE_LANES_FN Vec3 shade_kept(const ShadeConstants& k, const ShadePlace& s, ShadeWay w, Vec3 each) {
-  const Vec3 kept = v_exp((each - v_splat(Float(1.0f))) * w.outside);
-  if (!k.bundled) return kept;
-  const auto within = [&](Float share) { return shade_within(s, w, Float(1.0f) - share); };
-  return kept * Vec3(within(each.x), within(each.y), within(each.z));
+  const auto through = [&](Float share) { return shade_through(k, s, w, Float(1.0f) - share); };
+  return Vec3(through(each.x), through(each.y), through(each.z));
 }
 
 // Share of light that the fibers on its way let pass to a Kajiya-Kay fiber: half of what its diffuse lobe scatters goes on.

@@ -47,6 +47,7 @@ void gather_lane(const Gather& g, std::uint32_t key, const SegmentRef& segment, 
   batch.tx[i] = s.tangent.x, batch.ty[i] = s.tangent.y, batch.tz[i] = s.tangent.z;
   batch.ex[i] = to_eye.x, batch.ey[i] = to_eye.y, batch.ez[i] = to_eye.z;
   batch.absorb_r[i] = absorption.x, batch.absorb_g[i] = absorption.y, batch.absorb_b[i] = absorption.z;
+  batch.fiber_radius[i] = 0.5f * s.width;
   if (constants.bundled) set_bundle(bundle_at(g.scene, g.numbering, segment, t, s, to_eye), batch, i);
   if (visibility) *visibility = g.packer->sample(segment, t, s);
 }

@@ -349,17 +349,18 @@ TEST(ShadeProbe, LightsWhatIsVisible) {
 }
 
 TEST(Shade, DirectLightFadesWithTheCrossingsOfTheOpacityMap) {
-  // Without multiple scattering a strand keeps e^−n of the light; n is what crossings_at() says.
+  // Without multiple scattering a strand too thin to share others with the eye keeps e^−n of the light; n is what crossings_at() says.
   Scene scene = thicket(HairMaterial::Model::kMarschner);
   scene.lights.resize(1), scene.environment.radiance = {0, 0, 0};
   scene.settings.dual_scattering = false;
   const GBuffer g = random_gbuffer(scene, 1);
-  const Radiance shadowed = shade_all(scene, g);
   const LightRig rig = prepare_lights(scene, MeshTracer({}));
-  scene.settings.shadows = false;
-  const Radiance lit = shade_all(scene, g);
   const CameraView view = make_camera_view(scene.camera, 32, 32);
   const SegmentNumbering numbering = numbering_of(scene);
+  scene.grooms[0].width_scale = 1e-6f;
+  const Radiance shadowed = shade(scene, view, numbering, g, rig, kMiddle);
+  scene.settings.shadows = false;
+  const Radiance lit = shade_all(scene, g);
   float deepest = 0;
   for (std::uint32_t p = 0; p < 32 * 32; ++p) {
     const std::uint32_t i = lit.index[p];
@@ -383,6 +384,50 @@ Scene bundled(Scene scene, float fibers, float widths) {
   sections.fibers.assign(points, fibers), sections.diameters.assign(points, width), sections.spreads.assign(points, 0);
   scene.grooms[0].sections = std::make_shared<const ThickSections>(std::move(sections));
   return scene;
+}
+
+/// Strands along y at random in a box, under a light that travels along `travels`, without multiple scattering.
+Scene parallel_strands(Vec3 travels) {
+  std::vector<std::array<Vec3, 2>> lines;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    Rng rng(11, i);
+    const float x = 0.2f * rng.uniform() - 0.1f, z = 0.2f * rng.uniform() - 0.1f;
+    lines.push_back({Vec3(x, -0.5f, z), Vec3(x, 0.5f, z)});
+  }
+  Scene scene = scene_of(linear(lines, 3e-4f));
+  scene.camera.projection = Camera::Projection::kOrthographic, scene.camera.height = 0.2f;
+  scene.settings.dual_scattering = false, scene.settings.opacity_map_size = 256;
+  scene.environment.radiance = {0, 0, 0};
+  scene.lights = {directional(travels, {1, 1, 1})};
+  return scene;
+}
+
+/// Share of the light that comes to those of `scene`, wherever they are.
+double share_of_light(Scene scene) {
+  const GBuffer g = random_gbuffer(scene, 1);
+  const auto sum = [&] {
+    double total = 0;
+    for (const Vec3 c : shade_all(scene, g).color) total += static_cast<double>(c.x);
+    return total;
+  };
+  const double arriving = sum();
+  scene.settings.shadows = false;
+  return arriving / sum();
+}
+
+// What the eye sees is lit from where it stands: nothing is between. A tenth of a radian beside it strands shade as they do from anywhere.
+TEST(Shade, LightFromBehindTheEyeMeetsNothing) {
+  for (const float fibers : {0.f, 5.f}) {
+    const auto share = [&](Vec3 travels) {
+      const Scene scene = parallel_strands(travels);
+      return share_of_light(fibers > 0 ? bundled(scene, fibers, 30) : scene);
+    };
+    const double behind = share({0, 0, -1}), beside = share({0.1f, 0, -1}), across = share({1, 0, 0});
+    std::printf("share of the light: %.3f from behind the eye, %.3f beside it, %.3f across\n", behind, beside, across);
+    EXPECT_GT(behind, 2 * beside) << fibers;
+    EXPECT_GT(behind, 0.8) << fibers;
+    if (fibers == 0) EXPECT_NEAR(beside, across, 0.15 * across);
+  }
 }
 
 TEST(Shade, ABundleOfOneFiberIsAFiber) {

@@ -87,7 +87,7 @@ PELAGE_FN ScatterAggregate parity_aggregate(ScatterLobes l, Float hairs, Float w
 PELAGE_FN Vec4 parity_bundle(ScatterBundle b, Float cos_phi, Float loss) {
   return Vec4(scatter_bundle_crossings(b, cos_phi), scatter_bundle_coverage(b),
               scatter_bundle_visible(b, scatter_bundle_way(b, cos_phi), loss),
-              scatter_bundle_escape(b) + scatter_bundle_clumping(b));
+              scatter_bundle_escape(b) + scatter_bundle_clumping(b, loss));
 }
 PELAGE_FN Vec4 parity_terms(ScatterAggregateTerms t) { return Vec4(t.forward, t.back, t.side, t.masked); }
 PELAGE_FN Vec4 parity_aggregate_energies(ScatterAggregate a) { return Vec4(a.a_back.x, a.a_back.z, a.back.v, a.straight.tt.y); }

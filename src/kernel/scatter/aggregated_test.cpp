@@ -109,6 +109,24 @@ TEST(Bundle, VisibleShareWithinItsBoundOfQuadrature) {
   std::printf("visible share: worst error %.3f, mean %.4f\n", worst, mean / count);
 }
 
+// Of light whose hairs each take `loss`, rays over a circle of hairs keep the mean of e^(-loss x), x the hairs on each.
+TEST(Bundle, ClumpingIsWhatBundlesTakeOverWhatTheirHairsTake) {
+  constexpr int kRays = 100000;
+  for (const float hairs : {1.f, 20.f, 100.f}) {
+    const ScatterBundle b = scatter_bundle_buffon(hairs, 1, 15, 15);
+    for (const float loss : {0.05f, 0.3f, 1.f}) {
+      double kept = 0;
+      for (int i = 0; i < kRays; ++i) {
+        const double h = (i + 0.5) / kRays;
+        kept += std::exp(static_cast<double>(-loss * b.longest) * std::sqrt(1 - h * h)) / kRays;
+      }
+      const float crossings = scatter_bundle_crossings(b, -1);
+      EXPECT_NEAR(1 - loss * crossings * scatter_bundle_clumping(b, loss), kept, static_cast<double>(kGapsMaxRelError) * kept)
+          << hairs << " " << loss;
+    }
+  }
+}
+
 // Seen where the light stands, everything is lit.
 TEST(Bundle, NothingIsShadedWhereTheLightStandsBehindTheEye) {
   for (const float hairs : {1.f, 10.f, 100.f}) {

@@ -8,6 +8,7 @@
 const float kGapsMaxRelError = 9.0e-3f;   // scatter_bundle_gaps, c >= 0
 const float kVisibleMaxAbsError = 0.07f;  // scatter_bundle_visible without its joint part, against quadrature; 0.007 on average
 const float kFewestCrossings = 0.02f;     // fewer hairs than this on the mean way count as this many
+const float kLeastLoss = 0.01f;           // of scatter_bundle_clumping, which is 1 there
 
 struct ScatterBundle {
   Float reach;     // mean crossings times half the width that they are spread over, metres
@@ -63,14 +64,16 @@ PELAGE_FN Float scatter_bundle_crossings(ScatterBundle b, Float cos_phi) {
 // Share of the bundle's width, seen from the eye, that hair covers.
 PELAGE_FN Float scatter_bundle_coverage(ScatterBundle b) { return b.coverage; }
 
-// What the bundle covers over what its hairs would side by side, both seen from the eye: by how much a groom drawn in such bundles lets
-// sight deeper in than its hairs do. 1: of hairs that do not hide each other.
-PELAGE_FN Float scatter_bundle_clumping(ScatterBundle b) {
-  return min(Float(1.27323954f) * b.coverage / b.longest, Float(1.0f));
+// What such bundles take of the light on its way through them over what their hairs would take one by one, where each hair takes the
+// share `loss`: a bundle takes 1 - F(loss c), its hairs loss n. 1: of hairs that do not hide each other, or that take nothing.
+PELAGE_FN Float scatter_bundle_clumping(ScatterBundle b, Float loss) {
+  Float taken = b.longest * max(loss, Float(kLeastLoss));
+  return min(Float(1.27323954f) * (Float(1.0f) - scatter_bundle_gaps(taken)) / taken, Float(1.0f));
 }
 
 // The way from what the eye sees to a light.
 struct ScatterWay {
+  Float seen;     // half the width of the bundle as the light sees it, metres
   Float longest;  // mean number of hairs on the longest way through the bundle toward the light
   Float cosine;   // between eye and light where the ellipse is stretched to a circle
   Float joint;    // how far both ways are one: 1 where the light stands behind the eye
@@ -82,6 +85,7 @@ PELAGE_FN ScatterWay scatter_bundle_way(ScatterBundle b, Float cos_phi) {
   Float apart = sqrt(max(Float(2.0f) - Float(2.0f) * cos_phi, Float(0.0f)));
   Float together = Float(1.27323954f) * b.density + Float(1.0e-6f);
   ScatterWay w;
+  w.seen = seen;
   w.longest = scatter_longest_way(b.reach / seen);
   w.cosine = v_clamp(cos_phi * b.wide / seen, Float(-1.0f), Float(1.0f));
   w.joint = together / (together + apart);
