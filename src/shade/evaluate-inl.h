@@ -191,13 +191,16 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
 // Directions of a light about the fiber.
 struct ShadeAngles {
   Float sin_i, cos_i, cos_phi;
+  Float apart2;  // 2 - 2 cos_phi, without its cancellation where light and eye are near each other
 };
 
 PELAGE_LANES_FN ShadeAngles shade_angles(const ShadePlace& s, Vec3 to_light) {
   ShadeAngles a;
   a.sin_i = v_clamp(dot(to_light, s.tangent), Float(-1.0f), Float(1.0f));
   a.cos_i = sqrt(max(Float(1.0f) - a.sin_i * a.sin_i, Float(0.0f)));
-  a.cos_phi = v_clamp(dot(v_normalize(to_light - s.tangent * a.sin_i), s.across_o), Float(-1.0f), Float(1.0f));
+  const Vec3 across_i = v_normalize(to_light - s.tangent * a.sin_i), apart = across_i - s.across_o;
+  a.cos_phi = v_clamp(dot(across_i, s.across_o), Float(-1.0f), Float(1.0f));
+  a.apart2 = dot(apart, apart);
   return a;
 }
 
@@ -296,8 +299,8 @@ PELAGE_LANES_FN Float shade_own_crossings(const ShadePlace& s, Float grain) {
 
 // By how many widths of a fiber the ways to eye and light part, across the fiber, where the light's has one crossing more.
 PELAGE_LANES_FN Float shade_parting(const ShadePlace& s, const LightConstants& light, Float slope, ShadeAngles a) {
-  constexpr float kLeast2 = 1e-6f;  // what a cosine next to 1 can tell
-  const Float apart = sqrt(max(Float(2.0f) - Float(2.0f) * a.cos_phi * Float(light.mean_cosine), Float(kLeast2)));
+  const Float spread = Float(2.0f) - Float(2.0f) * Float(light.mean_cosine);
+  const Float apart = sqrt(a.apart2 * Float(light.mean_cosine) + spread);
   return apart * a.cos_i / max(slope * s.width, Float(1.0e-9f));
 }
 
