@@ -44,7 +44,7 @@ std::uint32_t choose_subdivisions(const AssembleJob& job, float tolerable) {
   const StrandSet& set = *job.strands;
   if (set.basis == CurveBasis::kLinear) return 1;
   const std::size_t stride = std::max<std::size_t>(1, set.strand_count() / kSampledStrands);
-  const std::uint32_t span = set.basis == CurveBasis::kBezier ? 3 : 1;
+  const std::uint32_t span = points_per_span(set.basis);
   std::vector<float> errors;
   for (std::size_t s = 0; s < set.strand_count(); s += stride)
     for (std::uint32_t i = set.offsets[s], end = set.offsets[s + 1]; i + span < end; i += span)

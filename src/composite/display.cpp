@@ -1,4 +1,7 @@
 // The picture for a display, many pixels at a time.
+#include <algorithm>
+#include <cstring>
+
 #include "composite/composite.h"
 #include "core/check.h"
 #include "core/parallel.h"
@@ -45,7 +48,8 @@ void encode_run(const float* in, std::size_t count, float* out) {
   std::size_t i = 0;
   for (; i + step <= count; i += step) {
     const float* from = in + 4 * i;  // a backdrop of one color is encoded once
-    if (i > 0 && std::equal(from, from + floats, from - floats)) std::copy(out + 4 * i - floats, out + 4 * i, out + 4 * i);
+    if (i > 0 && std::memcmp(from, from - floats, floats * sizeof(float)) == 0)
+      std::copy(out + 4 * i - floats, out + 4 * i, out + 4 * i);
     else encode_lanes(from, out + 4 * i);
   }
   if (i == count) return;

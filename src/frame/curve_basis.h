@@ -10,10 +10,12 @@
 
 namespace pelage {
 
+/// Control points from the start of one span to the start of the next.
+inline std::uint32_t points_per_span(CurveBasis basis) { return basis == CurveBasis::kBezier ? 3 : 1; }
+
 /// Spans of a strand of `points` control points: 0 for fewer than a span needs.
 inline std::uint32_t span_count(CurveBasis basis, std::uint32_t points) {
-  if (points < 2) return 0;
-  return basis == CurveBasis::kBezier ? (points - 1) / 3 : points - 1;
+  return points < 2 ? 0 : (points - 1) / points_per_span(basis);
 }
 
 /// Weights of the four control points of a span at t ∈ [0, 1] (kernel/curve/bases.h).

@@ -19,8 +19,7 @@ SeenBundle bundle_at(const Scene& scene, const SegmentNumbering& numbering, cons
                      const StrandSurface& surface, Vec3 to_eye) {
   const GroomInstance& groom = scene.grooms[s.groom];
   const ThickSections& all = *groom.sections;
-  const std::size_t stride = groom.strands->basis == CurveBasis::kBezier ? 3 : 1,
-                    i = groom.strands->offsets[s.strand] + s.span * stride;
+  const std::size_t stride = points_per_span(groom.strands->basis), i = groom.strands->offsets[s.strand] + s.span * stride;
   const float local = (static_cast<float>(s.k) + t) / static_cast<float>(numbering.subdivisions[s.groom]);
   const auto between = [&](const auto& values) { return values[i] + (values[i + stride] - values[i]) * local; };
   const auto axis = [&](const std::vector<Vec3>& axes) { return transform_vector(groom.transform, between(axes)); };

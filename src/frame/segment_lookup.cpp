@@ -18,9 +18,8 @@ struct Span {
 Span load_span(const StrandSet& set, std::uint32_t strand, std::uint32_t span) {
   Span r;
   span_points(set, strand, span, r.p);
-  const bool bezier = set.basis == CurveBasis::kBezier;
-  const std::uint32_t first = set.offsets[strand] + (bezier ? 3 * span : span);
-  r.width[0] = set.width(first), r.width[1] = set.width(first + (bezier ? 3 : 1));
+  const std::uint32_t stride = points_per_span(set.basis), first = set.offsets[strand] + stride * span;
+  r.width[0] = set.width(first), r.width[1] = set.width(first + stride);
   return r;
 }
 
@@ -116,7 +115,7 @@ Vec3 strand_color(const GroomInstance& groom, std::uint32_t strand, std::uint32_
   const StrandSet& set = *groom.strands;
   if (set.colors.empty()) return groom.material.color;
   if (set.colors.size() == set.strand_count()) return set.colors[strand];
-  const std::uint32_t stride = set.basis == CurveBasis::kBezier ? 3 : 1;
+  const std::uint32_t stride = points_per_span(set.basis);
   return set.colors[set.offsets[strand] + span * stride];
 }
 

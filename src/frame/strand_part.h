@@ -24,9 +24,6 @@ inline StrandPart drawn_part(const GroomInstance& groom, std::size_t i) {
   return groom.only ? (*groom.only)[i] : whole_strand(*groom.strands, i);
 }
 
-/// Control points from the start of one span to the start of the next.
-inline std::uint32_t points_per_span(CurveBasis basis) { return basis == CurveBasis::kBezier ? 3 : 1; }
-
 /// Control point that a part starts at; it reaches `spans` · points_per_span() further.
 inline std::uint32_t first_point(const StrandSet& set, const StrandPart& part) {
   return set.offsets[part.strand] + part.first_span * points_per_span(set.basis);
