@@ -62,7 +62,7 @@ def construction(shop, report, options):
 def look(shop, report, options):
     cache = TraceCache(shop, options.cache)
     report.text("Look: near, middle and far beside path tracing", heading=True)
-    report.text(f"FLIP over the pixels of hair, {options.size}² pixels, against {options.samples} paths a pixel through all strands; the noise of these paths is in "
+    report.text(f"FLIP over the pixels of hair, {options.size}² pixels near, twice as many a side in the middle, four times far away, against {options.samples} paths a pixel through all strands; the noise of these paths is in "
                 f"every number. Hair takes 60, 20 and 2 % of the picture. Light falls by {-FALL}° and is turned away from the eye by 0°, 45°, 90° and 180°.")
     found = {}
     for style in options.styles:
@@ -422,7 +422,7 @@ def parse_options():
     parser.add_argument("--cache", help="folder of path-traced pictures (OUT/references)")
     for axis, known in (("styles", STYLES), ("colors", COLORS), ("lights", LIGHTS), ("shots", SHOTS)):
         parser.add_argument(f"--{axis}", metavar="A,B", help=f"only these: {', '.join(map(str, known))}")
-    parser.add_argument("--size", type=int, help="pixels of a side, of the look (256; 32 with --quick)")
+    parser.add_argument("--size", type=int, help="pixels of a side, of the look near; twice as many in the middle, four times far away (256; 32 with --quick)")
     parser.add_argument("--samples", type=int, help="paths a pixel of the look's references (64; 4 with --quick)")
     parser.add_argument("--strands", type=int, help="of each groom (100000; 1000 with --quick)")
     parser.add_argument("--frames", type=int, help="of the dolly (60; 3 with --quick)")

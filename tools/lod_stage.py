@@ -9,6 +9,7 @@ from reference_cache import ReferenceCache
 
 COLORS = {"blond": (0.08, 0.1), "light-brown": (0.28, 0.15), "red-brown": (0.7, 0.9), "black": (6, 0)}  # eumelanin, pheomelanin
 SHOTS = {"near": 0.6, "middle": 0.2, "far": 0.02}  # share of the picture that hair takes
+FINER = {"near": 1, "middle": 2, "far": 4}  # times as many pixels a side, so that hair takes as many of them everywhere
 FALL, FOV, AZIMUTH, ELEVATION = -20, 26, 145, 8  # of light and camera, degrees: hair is seen from behind, aside
 
 
@@ -122,10 +123,11 @@ class Shot:
     def __init__(self, stage, shot, color, light):
         self.stage, self.shot, self.color, self.light = stage, shot, color, light
         self.name = f"{stage.style}-{shot}-{color}-{light}"
-        self.scene = stage.scene(stage.distance(SHOTS[shot]), stage.options.size, color, light)
+        self.pixels = FINER[shot] * stage.options.size
+        self.scene = stage.scene(stage.distance(SHOTS[shot]), self.pixels, color, light)
 
     def mask(self):
-        scene = self.stage.scene(self.stage.distance(SHOTS[self.shot]), self.stage.options.size)
+        scene = self.stage.scene(self.stage.distance(SHOTS[self.shot]), self.pixels)
         return self.stage.render(f"{self.stage.style}-{self.shot}-mask", scene, "--no-lod", "--view", "coverage", "--float")[0]
 
     def truth(self, cache):
