@@ -22,6 +22,12 @@ struct Extent {
   void extend(const Extent& e) { box.extend(e.box), widest = std::max(widest, e.widest); }
 };
 
+/// The widest that a control point may look: thick hairs are as wide as the eye sees them, and lights know no eye.
+float widest_seen(const GroomInstance& groom, std::size_t point) {
+  const ThickSections* thick = groom.sections.get();
+  return thick ? 2 * std::max(length(thick->major[point]), length(thick->minor[point])) : groom.strands->width(point);
+}
+
 Extent part_extent(const GroomInstance& groom, const StrandPart& part) {
   const StrandSet& set = *groom.strands;
   Extent e;
@@ -31,7 +37,7 @@ Extent part_extent(const GroomInstance& groom, const StrandPart& part) {
     const Vec3 p = transform_point(groom.transform, set.points[i]);
     e.box.lower = {std::min(e.box.lower.x, p.x), std::min(e.box.lower.y, p.y), std::min(e.box.lower.z, p.z)};
     e.box.upper = {std::max(e.box.upper.x, p.x), std::max(e.box.upper.y, p.y), std::max(e.box.upper.z, p.z)};
-    e.widest = std::max(e.widest, set.width(i));
+    e.widest = std::max(e.widest, widest_seen(groom, i));
   }
   return e;
 }
