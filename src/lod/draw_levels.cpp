@@ -1,7 +1,6 @@
 #include "lod/draw_levels.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <memory>
 
@@ -20,16 +19,18 @@ class ThickHairPen {
  public:
   ThickHairPen(const StrandSet& set, const LodPlace& place) : set_(set), lod_(place.lod), eye_(place) {}
 
-  void operator()(std::uint32_t h, std::size_t level, const LodRun& run, Pieces& out) const {
+  void operator()(std::uint32_t h, std::size_t level, std::uint16_t segments, Pieces& out) const {
     const HairWidths bands = hair_widths(lod_, eye_, h);
     const float fibers = static_cast<float>(lod_.hairs[h].fibers) * crossing_ratio(lod_.length_ratios[h]),
                 spread = direction_variance(lod_.length_ratios[h]), twist = lod_.twists.empty() ? 0 : lod_.twists[h];
     ThickSections& sections = out.sections;
-    for (std::size_t k = run.first; k <= run.last; ++k) {
+    for_each_run(segments, [&](const LodRun& run) { out.parts.push_back(hair_part(out.hairs.strand_count(), run)); });
+    const std::uint32_t ends = segments | std::uint32_t{segments} << 1;  // control points of what is drawn
+    for (std::size_t k = 0; k < kPoints; ++k) {
       const std::size_t i = std::size_t{h} * kPoints + k;
       const float fiber = 2 * lod_.radii[i];
       out.hairs.points.push_back(hair_knot(lod_, h, k));
-      out.hairs.widths.push_back(covered_width(bands.metres[k], fiber, fibers));
+      out.hairs.widths.push_back(ends >> k & 1 ? covered_width(bands.metres[k], fiber, fibers) : 0);
       sections.major.push_back(lod_.major[i]), sections.minor.push_back(lod_.minor[i]);
       sections.fibers.push_back(fibers), sections.diameters.push_back(fiber), sections.spreads.push_back(spread);
       sections.twists.push_back(twist);
@@ -40,21 +41,15 @@ class ThickHairPen {
   }
 
  private:
+  static StrandPart hair_part(std::size_t hair, const LodRun& run) {
+    return {static_cast<std::uint32_t>(hair), static_cast<std::uint32_t>(run.first),
+            static_cast<std::uint32_t>(run.last - run.first)};
+  }
+
   const StrandSet& set_;
   const LodHierarchy& lod_;
   const LodEye eye_;
 };
-
-/// Room for the thick hairs first … last − 1.
-void reserve_for(const LodHierarchy& lod, const LodCut& cut, std::size_t first, std::size_t last, Pieces& part) {
-  std::size_t points = 0, runs = 0;
-  for (std::size_t h = first; h < last; ++h) {
-    const std::uint32_t shown = shown_segments(lod, cut, h), starts = shown & ~(shown << 1);
-    points += static_cast<std::size_t>(std::popcount(shown) + std::popcount(starts));
-    runs += static_cast<std::size_t>(std::popcount(starts));
-  }
-  reserve(points, runs, part);
-}
 
 /// What stands for the hairs that `cut` shows, level by level.
 Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster& draw) {
@@ -65,10 +60,11 @@ Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster
     parallel_for(count, kHairsPerTask, [&](std::size_t begin, std::size_t end) {
       Pieces& part = parts[before + begin / kHairsPerTask];
       part.hairs.offsets = {0};
-      reserve_for(lod, cut, first + begin, first + end, part);
+      std::size_t shown_hairs = 0;
+      for (std::size_t h = first + begin; h < first + end; ++h) shown_hairs += shown_segments(lod, cut, h) != 0;
+      reserve(shown_hairs * kPoints, shown_hairs, part);
       for (std::size_t h = first + begin; h < first + end; ++h)
-        for_each_run(shown_segments(lod, cut, h),
-                     [&](const LodRun& run) { draw(static_cast<std::uint32_t>(h), level, run, part); });
+        if (const std::uint16_t shown = shown_segments(lod, cut, h)) draw(static_cast<std::uint32_t>(h), level, shown, part);
     });
   }
   return join(parts);
@@ -135,6 +131,7 @@ std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut&
   hairs.name += " (thick hairs)";
   hairs.strands = std::make_shared<const StrandSet>(std::move(pieces.hairs));
   hairs.sections = std::make_shared<const ThickSections>(std::move(pieces.sections));
+  hairs.only = std::make_shared<const std::vector<StrandPart>>(std::move(pieces.parts));
   return drawn;
 }
 

@@ -25,7 +25,7 @@ float crossing_ratio(float length_ratio);
 float direction_variance(float length_ratio);
 
 /// What stands for `groom` (which has `lod`) where its hairs have the levels of `cut`: the groom itself with GroomInstance::only what is drawn of
-/// its strands, and curves of `basis` with GroomInstance::sections, which `draw` makes of each hair that shows. What is empty is left out; a groom of
+/// its strands, and parts of curves of `basis` with GroomInstance::sections, which `draw` makes of each hair that shows. What is empty is left out; a groom of
 /// which all strands are drawn is returned as it is. The same for any number of threads. O(what is drawn).
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut& cut, const StrandCuts& cuts, CurveBasis basis,
                                        const DrawCluster& draw);

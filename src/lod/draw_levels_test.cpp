@@ -169,9 +169,12 @@ TEST_F(DrawLevels, PartsOfStrandsAreCutWhereTheHairIs) {
   EXPECT_LT(std::fabs(off), 0.25 / 23) << "as often too long as too short";
   const StrandSet& hairs = *drawn[1].strands;
   validate(hairs, "test");
-  EXPECT_EQ(hairs.strand_count(), 2 * lod_.level(1).size());
-  EXPECT_EQ(hairs.offsets[1], 5u);
-  EXPECT_EQ(hairs.offsets[2], 5u + 7u);
+  ASSERT_EQ(hairs.strand_count(), lod_.level(1).size()) << "whole, so that places along them are those of the hair";
+  ASSERT_EQ(drawn[1].only->size(), 2 * hairs.strand_count());
+  for (std::uint32_t s = 0; s < hairs.strand_count(); ++s) {
+    ASSERT_EQ((*drawn[1].only)[2 * s], (StrandPart{s, 0, 4}));
+    ASSERT_EQ((*drawn[1].only)[2 * s + 1], (StrandPart{s, 9, 6}));
+  }
 }
 
 // Hairs of the same prism may have different levels, and so may segments of one.
@@ -183,10 +186,10 @@ TEST_F(DrawLevels, ChildrenStandForAPartOfTheirParent) {
   ASSERT_EQ(drawn.size(), 1u);
   const StrandSet& set = *drawn[0].strands;
   ASSERT_EQ(set.strand_count(), lod_.level(0).size() + parent.children);
-  EXPECT_EQ(set.offsets[1], 13u) << "from control point 3 to 15";
+  EXPECT_EQ(drawn[0].only->front(), (StrandPart{0, 3, 12})) << "from control point 3 to 15";
   for (std::size_t c = 0; c < parent.children; ++c) {
     const std::size_t s = lod_.level(0).size() + c;
-    EXPECT_EQ(set.offsets[s + 1] - set.offsets[s], 4u);
+    EXPECT_EQ((*drawn[0].only)[s], (StrandPart{static_cast<std::uint32_t>(s), 0, 3}));
     EXPECT_EQ(drawn[0].sections->levels[s], 1);
   }
 }

@@ -10,6 +10,7 @@
 #include "frame/camera_view.h"
 #include "frame/curve_basis.h"
 #include "frame/section.h"
+#include "frame/strand_part.h"
 #include "lod/draw_levels.h"
 
 namespace pelage {
@@ -84,7 +85,12 @@ class CardPen {
   CardPen(const HairCards& cards, const StrandSet& set, const LodPlace& place)
       : cards_(cards), set_(set), lod_(place.lod), eye_(place) {}
 
-  void operator()(std::uint32_t h, std::size_t level, const LodRun& run, Pieces& out) const {
+  void operator()(std::uint32_t h, std::size_t level, std::uint16_t segments, Pieces& out) const {
+    for_each_run(segments, [&](const LodRun& run) { add_run(h, level, run, out); });
+  }
+
+ private:
+  void add_run(std::uint32_t h, std::size_t level, const LodRun& run, Pieces& out) const {
     const std::size_t first = run.first * HairCards::kRowsPerSegment, last = run.last * HairCards::kRowsPerSegment;
     for (std::size_t column = 0; column < kColumns; ++column)
       for (std::size_t from = first, to; from < last; from = to) {
@@ -94,7 +100,6 @@ class CardPen {
       }
   }
 
- private:
   /// Texels of a column, rows `from` to `to` − 1.
   void add_strip(std::uint32_t h, std::size_t column, std::size_t from, std::size_t to, std::size_t level, Pieces& out) const {
     int opaque = 0;
@@ -116,6 +121,7 @@ class CardPen {
     out.sections.levels.push_back(static_cast<std::uint8_t>(level));
     append_attributes(lod_, h, set_, out.hairs);
     end_strand(out.hairs);
+    out.parts.push_back(whole_strand(out.hairs, out.hairs.strand_count() - 1));
   }
 
   const HairCards& cards_;

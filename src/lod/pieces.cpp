@@ -4,7 +4,6 @@
 
 #include "core/buffer.h"
 #include "core/parallel.h"
-#include "frame/strand_part.h"
 
 namespace pelage {
 namespace {
@@ -45,14 +44,13 @@ void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& 
   to.strand_id.push_back(from.strand_id.empty() ? one : from.strand_id[one]);
 }
 
-void append_strand(const StrandSet& set, const StrandPart& part, float widen, StrandSet& pieces) {
-  const std::uint32_t begin = first_point(set, part), end = begin + part.spans * points_per_span(set.basis) + 1;
-  for (std::uint32_t i = begin; i < end; ++i) {
+void append_strand(const StrandSet& set, std::uint32_t strand, float widen, StrandSet& pieces) {
+  for (std::uint32_t i = set.offsets[strand]; i < set.offsets[strand + 1]; ++i) {
     pieces.points.push_back(set.points[i]), pieces.widths.push_back(set.width(i) * widen);
     if (set.colors.size() == set.point_count()) pieces.colors.push_back(set.colors[i]);
     if (!set.transparency.empty()) pieces.transparency.push_back(set.transparency[i]);
   }
-  append_attributes(set, part.strand, pieces);
+  append_attributes(set, strand, pieces);
   end_strand(pieces);
 }
 
@@ -74,8 +72,9 @@ Pieces join(const std::vector<Pieces>& parts) {
   ThickSections& sections = all.sections;
   hairs.offsets = {0};
   for (const Pieces& part : parts) {
-    const auto base = hairs.offsets.back();
+    const auto base = hairs.offsets.back(), curves_before = static_cast<std::uint32_t>(hairs.strand_count());
     for (std::size_t s = 1; s < part.hairs.offsets.size(); ++s) hairs.offsets.push_back(base + part.hairs.offsets[s]);
+    for (const StrandPart& p : part.parts) all.parts.push_back({curves_before + p.strand, p.first_span, p.spans});
   }
   const auto gather = [&](auto& to, const auto& of) {
     for (const Pieces& part : parts) append(of(part), to);

@@ -27,15 +27,16 @@ void for_each_run(std::uint32_t segments, const Body& body) {
   }
 }
 
-/// What stands for clusters of strands.
+/// What stands for clusters of strands: whole curves, and which parts of them are drawn.
 struct Pieces {
   StrandSet hairs;
-  ThickSections sections;  ///< of `hairs`
+  ThickSections sections;         ///< of `hairs`
+  std::vector<StrandPart> parts;  ///< of `hairs`, ascending
 };
 
-/// Appends what stands for the cluster of a hair along a run of its segments. Called from several threads at once, each with pieces of
-/// its own. `level` is the hair's.
-using DrawCluster = std::function<void(std::uint32_t hair, std::size_t level, const LodRun& run, Pieces& out)>;
+/// Appends what stands for the cluster of a hair along the segments whose bits are set, of which there are some. Called from several threads
+/// at once, each with pieces of its own. `level` is the hair's.
+using DrawCluster = std::function<void(std::uint32_t hair, std::size_t level, std::uint16_t segments, Pieces& out)>;
 
 /// Knot k of the B-spline along the center of a hair.
 Vec3 hair_knot(const LodHierarchy& lod, std::size_t hair, std::size_t k);
@@ -47,8 +48,8 @@ void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& 
 /// Closes the strand whose points were appended last.
 void end_strand(StrandSet& set);
 
-/// A part of a strand, `widen` times as wide as it is.
-void append_strand(const StrandSet& set, const StrandPart& part, float widen, StrandSet& pieces);
+/// A strand, `widen` times as wide as it is.
+void append_strand(const StrandSet& set, std::uint32_t strand, float widen, StrandSet& pieces);
 
 /// Makes room for so many points of so many curves.
 void reserve(std::size_t points, std::size_t curves, Pieces& pieces);

@@ -380,7 +380,7 @@ StrandLabel RayScene::strand_label(const SceneHit& hit) const {
   if (const ThickCurves* thick = thick_[hit.object].curves.get()) {
     const std::uint32_t strand = thick->strand(hit.primitive), number = thick->number(hit.primitive);
     return {strand, number / kThickTessellation,
-            (static_cast<float>(number) + hit.u) / static_cast<float>(thick->pieces_of(strand))};
+            (static_cast<float>(number) + hit.u) / static_cast<float>(thick->pieces_of_strand(hit.primitive))};
   }
   const Span& span = grooms_[hit.object].spans[hit.primitive];
   return {span.strand, span.number, (static_cast<float>(span.number) + hit.u) / static_cast<float>(span.count)};

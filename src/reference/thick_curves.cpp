@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "frame/strand_part.h"
 #include "frame/camera_view.h"
 #include "frame/curve_basis.h"
 #include "kernel/scalar.h"
@@ -30,20 +31,23 @@ float chance_to_meet(float y, float r, float wide) {
 }  // namespace
 
 ThickCurves::ThickCurves(const GroomInstance& groom) {
-  first_pieces_ = {0};
-  for (std::uint32_t s = 0; s < groom.strands->strand_count(); ++s) add_strand(groom, s);
+  for (std::size_t i = 0; i < drawn_parts(groom); ++i)
+    if (const StrandPart part = drawn_part(groom, i); part.spans > 0) add_part(groom, part);
 }
 
-void ThickCurves::add_strand(const GroomInstance& groom, std::uint32_t strand) {
+void ThickCurves::add_part(const GroomInstance& groom, const StrandPart& part) {
   const StrandSet& set = *groom.strands;
   const ThickSections& all = *groom.sections;
-  const std::uint32_t begin = set.offsets[strand], last = set.offsets[strand + 1] - 1;
+  const std::uint32_t begin = set.offsets[part.strand], last = set.offsets[part.strand + 1] - 1;
+  const std::uint32_t first = first_point(set, part), end = first + part.spans;
   const float fiber_scale = groom.width_scale * similarity_scale(groom.transform);
-  for (std::uint32_t i = begin; i <= last; ++i) {
+  const auto number = static_cast<std::uint32_t>(parts_.size());
+  parts_.push_back({part, last - begin, part_of_.size()});
+  for (std::uint32_t i = first; i <= end; ++i) {
     const Vec3 p1 = set.points[i], p2 = set.points[std::min(i + 1, last)];
     const Vec3 p0 = i > begin ? set.points[i - 1] : p1 * 2.f - p2;
     const Vec3 p3 = i + 2 <= last ? set.points[i + 2] : p2 * 2.f - p1;
-    for (std::uint32_t k = 0; k < (i < last ? kThickTessellation : 1); ++k) {
+    for (std::uint32_t k = 0; k < (i < end ? kThickTessellation : 1); ++k) {
       const float t = static_cast<float>(k) / kThickTessellation;
       const auto curve = [&](Vec4 w) { return kernel::curve_combine(w, p0, p1, p2, p3); };
       const auto between = [&](const auto& v) { return i < last ? v[i] + (v[i + 1] - v[i]) * t : v[i]; };
@@ -54,14 +58,13 @@ void ThickCurves::add_strand(const GroomInstance& groom, std::uint32_t strand) {
            normalize(transform_vector(groom.transform, along)), transform_vector(groom.transform, between(all.major)),
            transform_vector(groom.transform, between(all.minor)), between(all.fibers), between(all.diameters) * fiber_scale,
            between(all.spreads), all.twists.empty() ? 0 : between(all.twists) / similarity_scale(groom.transform)});
-      if (i < last) strand_of_.push_back(strand);
+      if (i < end) part_of_.push_back(number);
     }
   }
-  first_pieces_.push_back(static_cast<std::uint32_t>(strand_of_.size()));
 }
 
 std::size_t ThickCurves::bytes() const {
-  return rings_.capacity() * sizeof(Ring) + (strand_of_.capacity() + first_pieces_.capacity()) * sizeof(std::uint32_t);
+  return rings_.capacity() * sizeof(Ring) + part_of_.capacity() * sizeof(std::uint32_t) + parts_.capacity() * sizeof(Part);
 }
 
 Bounds ThickCurves::bounds(std::size_t piece) const {
@@ -136,7 +139,7 @@ std::optional<float> ThickCurves::meet(std::size_t piece, const Ray& ray, float 
 
 float ThickCurves::way_out(std::size_t piece, Vec3 origin, Vec3 direction) const {
   constexpr float kBeyond = 1.0001f;
-  const std::uint32_t begin = first_pieces_[strand_of_[piece]], end = first_pieces_[strand_of_[piece] + 1];
+  const std::size_t begin = part(piece).first_piece, end = begin + part(piece).drawn.spans * kThickTessellation;
   float way = 0;
   for (int step = 0;;) {
     const std::optional<Chord> c = chord(piece, origin, direction);

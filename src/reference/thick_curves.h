@@ -43,19 +43,20 @@ class ThickCurves {
   /// Sections follow the strands' Catmull-Rom curves, straight from control point to control point.
   explicit ThickCurves(const GroomInstance& groom);
 
-  std::size_t piece_count() const { return strand_of_.size(); }
+  std::size_t piece_count() const { return part_of_.size(); }
   std::size_t span_count() const { return piece_count() / kThickTessellation; }
   std::size_t bytes() const;
   Bounds bounds(std::size_t piece) const;
   /// A ball that holds a piece: center and radius.
   Vec4 ball(std::size_t piece) const;
 
-  std::uint32_t strand(std::size_t piece) const { return strand_of_[piece]; }
+  std::uint32_t strand(std::size_t piece) const { return part(piece).drawn.strand; }
   /// The piece's place in its strand: pieces from the root.
-  std::uint32_t number(std::size_t piece) const { return static_cast<std::uint32_t>(piece - first_piece(strand_of_[piece])); }
-  std::uint32_t pieces_of(std::size_t strand) const {
-    return static_cast<std::uint32_t>(first_piece(strand + 1) - first_piece(strand));
+  std::uint32_t number(std::size_t piece) const {
+    return part(piece).drawn.first_span * kThickTessellation + static_cast<std::uint32_t>(piece - part(piece).first_piece);
   }
+  /// Pieces of the whole strand.
+  std::uint32_t pieces_of_strand(std::size_t piece) const { return part(piece).spans_of_strand * kThickTessellation; }
 
   /// Where a ray first meets one of the piece's fibers, which lie at random as u ∈ [0, 1) says; none: it passes. The share of u that
   /// passes is (1 − p)ⁿ, p the chance of one fiber to lie on the way: exact for fibers that are spread evenly where the ellipse
@@ -80,14 +81,21 @@ class ThickCurves {
     float one;   // chance of one fiber to lie on the line, per unit of the ray
   };
 
-  void add_strand(const GroomInstance& groom, std::uint32_t strand);
+  /// What is drawn of a strand.
+  struct Part {
+    StrandPart drawn;
+    std::uint32_t spans_of_strand;
+    std::size_t first_piece;
+  };
+
+  void add_part(const GroomInstance& groom, const StrandPart& part);
   std::optional<Chord> chord(std::size_t piece, Vec3 origin, Vec3 direction) const;
-  std::size_t first_piece(std::size_t strand) const { return first_pieces_[strand]; }
-  const Ring& ring(std::size_t piece) const { return rings_[piece + strand_of_[piece]]; }  // a strand has one more than pieces
+  const Part& part(std::size_t piece) const { return parts_[part_of_[piece]]; }
+  const Ring& ring(std::size_t piece) const { return rings_[piece + part_of_[piece]]; }  // a part has one more than pieces
 
   std::vector<Ring> rings_;
-  std::vector<std::uint32_t> strand_of_;     // [pieces]
-  std::vector<std::uint32_t> first_pieces_;  // [strands + 1]
+  std::vector<std::uint32_t> part_of_;  // [pieces]
+  std::vector<Part> parts_;
 };
 
 }  // namespace pelage

@@ -180,6 +180,30 @@ TEST(ThickTrace, SameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.linear.pixels, four.linear.pixels);
 }
 
+// Thick hairs of which parts are drawn: two parts that touch are the hair, its places along it too, and one of them is half of it.
+TEST(ThickTrace, PartsOfThickHairsAreWhereTheyWere) {
+  Scene whole = kit::scene_of(nullptr, 1.2f, 32);
+  whole.grooms[0] = kit::thick_hairs({{{-0.3f, -0.5f, 0}, {-0.3f, -0.2f, 0}, {-0.3f, 0.3f, 0}, {-0.3f, 0.5f, 0}},
+                                      {{0.3f, -0.5f, 0}, {0.3f, 0, 0}, {0.3f, 0.5f, 0}}},
+                                     {{0.2f, 0, 0}, {0, 0, 0.2f}, 4000, 1e-4f});
+  const auto traced = [&](std::vector<StrandPart> parts) {
+    Scene scene = whole;
+    if (!parts.empty()) scene.grooms[0].only = std::make_shared<const std::vector<StrandPart>>(std::move(parts));
+    TraceSettings settings;
+    settings.samples = 8, settings.layers = {TraceLayer::kCoverage, TraceLayer::kStrand, TraceLayer::kU};
+    return trace(scene, settings).linear.pixels;
+  };
+  const std::vector<float> all = traced({});
+  EXPECT_EQ(traced({{0, 0, 3}, {1, 0, 2}}), all);
+  EXPECT_EQ(traced({{0, 0, 1}, {0, 1, 2}, {1, 0, 2}}), all);
+  EXPECT_NE(traced({{0, 1, 2}, {1, 0, 2}}), all);
+  const std::vector<float> second = traced({{1, 0, 2}});
+  double both = 0, one = 0;
+  for (const float v : all) both += static_cast<double>(v);
+  for (const float v : second) one += static_cast<double>(v);
+  EXPECT_LT(one, both);
+}
+
 // Where thick hairs cross, light passes each by chance, as it passes both: shares multiply.
 TEST(ThickTrace, CrossedHairsAreMetAsOften) {
   const kit::Bundle bundle{{kWide, 0, 0}, {0, 0, kWide}, 20, kFiber};
