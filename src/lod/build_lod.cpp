@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/shared_progress.h"
+#include "frame/curve_basis.h"
 #include "lod/clusters.h"
 #include "lod/cross_section.h"
 #include "lod/guide_hairs.h"
@@ -93,6 +94,23 @@ void add_levels(const StrandSet& set, const Stations& stations, const LodSetting
   shared.add(settings.levels - lod.levels());
 }
 
+/// Length of a center's curve, not of its control polygon, which is longer: that of an inscribed polygon of four sides a span.
+double spline_length(const Vec3* control) {
+  constexpr int kSides = 4;
+  double total = 0;
+  Vec3 before = control[0];
+  for (std::size_t k = 0; k + 1 < kPoints; ++k) {
+    const Vec3 p[4] = {k > 0 ? control[k - 1] : control[0] * 2.f - control[1], control[k], control[k + 1],
+                       k + 2 < kPoints ? control[k + 2] : control[k + 1] * 2.f - control[k]};
+    for (int i = 1; i <= kSides; ++i) {
+      const Vec4 w = basis_weights(CurveBasis::kBSpline, static_cast<float>(i) / kSides);
+      const Vec3 at = kernel::curve_combine(w, p[0], p[1], p[2], p[3]);
+      total += static_cast<double>(length(at - before)), before = at;
+    }
+  }
+  return total;
+}
+
 /// The curves of a hair, and how its weights grow toward its corners.
 class HairWriter {
  public:
@@ -167,9 +185,9 @@ class HairWriter {
   }
 
   float length_ratio(std::span<const std::uint32_t> strands, const Vec3* center) const {
-    double fibers = 0, line = 0;
+    double fibers = 0;
     for (const std::uint32_t s : strands) fibers += static_cast<double>(stations_.lengths[s]);
-    for (std::size_t k = 1; k < kPoints; ++k) line += static_cast<double>(length(center[k] - center[k - 1]));
+    const double line = spline_length(center);
     return line > 0 && fibers > 0 ? static_cast<float>(fibers / (line * static_cast<double>(strands.size()))) : 1;
   }
 

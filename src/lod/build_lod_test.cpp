@@ -260,6 +260,19 @@ TEST(BuildLod, CurlsThatControlPointsCannotFollowAreInside) {
   EXPECT_GT(lod.length_ratios[0], 2);  // the coil is longer than the line along it
 }
 
+TEST(BuildLod, LengthsAreThoseOfCentersAsTheyAreDrawn) {
+  StrandSet set;  // one strand that goes left and right between control points, whose polygon is longer than the curve
+  set.widths = {1e-4f}, set.offsets = {0}, set.basis = CurveBasis::kCatmullRom;
+  for (int i = 0; i < 16; ++i) set.points.emplace_back(i % 2 == 0 ? 0.f : 0.005f, -0.02f * static_cast<float>(i), 0.f);
+  set.offsets.push_back(16);
+  const LodHierarchy lod = build_lod(set, {.memory_share = 100});
+  ASSERT_EQ(lod.hair_count(), 1u);
+  double polygon = 0;
+  for (std::size_t k = 1; k < kPoints; ++k) polygon += static_cast<double>(length(lod.centers[k] - lod.centers[k - 1]));
+  EXPECT_GT(polygon, 0.31);
+  EXPECT_NEAR(lod.length_ratios[0], 1, 0.02f);
+}
+
 /// Fibers that turn about a line `turns` times on its whole length of 0.1 m; bent: the line is an arc.
 StrandSet twisted(float turns, bool bent) {
   StrandSet set;
