@@ -120,10 +120,12 @@ struct ShadePlace {
   ScatterBack back;          //
   Vec3 tuft_color;           // of what has a diffuse lobe
   ScatterBundle bundle;      // of thick hairs: of the other fibers, which shade the one that is seen
-  Float lean;                // of thick hairs: variance of the fibers' directions
-  Float depth_shift;         // crossings
-  Float width;               // of the fiber, metres; 0: not known
-  Float table;               // where its table of forward attenuation begins
+  Float lean;         // of thick hairs: variance of the fibers' directions, half the mean square of the sine by which they lean
+  Float upright;      // and the cosine, by which the sines of their mean inclinations are less than that of the center
+  Float level_o;      // of thick hairs: cosine of the center's inclination to the eye
+  Float depth_shift;  // crossings
+  Float width;        // of the fiber, metres; 0: not known
+  Float table;        // where its table of forward attenuation begins
 };
 
 // Lobes of the models that have Marschner's kinds. Chiang's model is near-field: its mean over the fiber is shaded with.
@@ -153,8 +155,14 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   s.tangent = vec(batch.tx, batch.ty, batch.tz);
   const Vec3 to_eye = vec(batch.ex, batch.ey, batch.ez);
   const Vec3 absorption = vec(batch.absorb_r, batch.absorb_g, batch.absorb_b);
-  const Float sin_o = v_clamp(dot(to_eye, s.tangent), Float(-1.0f), Float(1.0f));
+  Float sin_o = v_clamp(dot(to_eye, s.tangent), Float(-1.0f), Float(1.0f));
   s.across_o = v_normalize(to_eye - s.tangent * sin_o);
+  if (k.bundled) {
+    s.lean = load(batch.lean.data() + i);
+    s.upright = sqrt(max(Float(1.0f) - Float(2.0f) * s.lean, Float(0.0f)));
+    s.level_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
+    sin_o = sin_o * s.upright;
+  }
   const auto own = [&](const ShadeBatch::Lanes& lanes, float shared) {
     return k.mapped ? load(lanes.data() + i) : Float(shared);
   };
@@ -167,7 +175,6 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
   s.width = Float(2.0f) * load(batch.fiber_radius.data() + i);
   if (k.bundled) {
     const Float others = max(load(batch.fibers.data() + i) - Float(1.0f), Float(0.0f));
-    s.lean = load(batch.lean.data() + i);
     s.bundle = scatter_bundle_buffon(others, load(batch.fiber_radius.data() + i), load(batch.half_width.data() + i),
                                      load(batch.half_depth.data() + i));
   }
@@ -191,8 +198,21 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
 // Directions of a light about the fiber.
 struct ShadeAngles {
   Float sin_i, cos_i, cos_phi;
-  Float apart2;  // 2 - 2 cos_phi, without its cancellation where light and eye are near each other
+  Float apart2;   // 2 - 2 cos_phi, without its cancellation where light and eye are near each other
+  Float level_i;  // of thick hairs: cosine of the center's inclination to the light
+  Float met;      // of thick hairs: light that fibers meet over that of a fiber with cos_i
 };
+
+// Of fibers that lean by δ toward all sides alike about a center with inclination θ: the mean sine of inclination is cos δ sin θ and the mean
+// inclination less than θ by σ² tan θ/2, σ² = sin²δ/2, so lobes are looked up for √(cos δ) sin θ. The mean square of the cosine, by which fibers meet
+// light, is cos²θ + σ²(2 − 3 cos²θ); its root is 2 % above the mean cosine at most.
+PELAGE_LANES_FN void shade_lean(const ShadePlace& s, ShadeAngles& a) {
+  const Float cos2 = a.cos_i * a.cos_i, met2 = cos2 + s.lean * (Float(2.0f) - Float(3.0f) * cos2);
+  a.level_i = a.cos_i;
+  a.sin_i = a.sin_i * s.upright;
+  a.cos_i = sqrt(max(Float(1.0f) - a.sin_i * a.sin_i, Float(1.0e-6f)));
+  a.met = sqrt(max(met2, Float(0.0f))) / a.cos_i;
+}
 
 PELAGE_LANES_FN ShadeAngles shade_angles(const ShadePlace& s, Vec3 to_light) {
   ShadeAngles a;
@@ -223,7 +243,8 @@ PELAGE_LANES_FN ScatterPelekis shade_widened(ScatterPelekis l, Float variance) {
 // Variance of θ_i + θ_o under a light: its own, and that of fibers which lean, |n_i + n_o|² times that of one axis.
 PELAGE_LANES_FN Float shade_spread(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
   const Float spread(light.spread2);
-  return k.bundled ? spread + s.lean * (Float(2.0f) + Float(2.0f) * a.cos_phi) : spread;
+  if (!k.bundled) return spread;
+  return spread + s.lean * (a.level_i * a.level_i + s.level_o * s.level_o + Float(2.0f) * a.level_i * s.level_o * a.cos_phi);
 }
 
 // f·cos of the fiber itself under directions of some spread.
@@ -362,9 +383,13 @@ PELAGE_LANES_FN Vec3 shade_diffused(const ShadeConstants& k, const ShadePlace& s
 
 PELAGE_LANES_FN Vec3 shade_under(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light) {
   const ShadeIllumination i = shade_illuminate(light, s.position);
-  const ShadeAngles a = shade_angles(s, i.to_light);
+  ShadeAngles a = shade_angles(s, i.to_light);
   const ShadeWay way = shade_way(k, s, light, a);
-  const Vec3 arriving = i.irradiance * shade_mesh_visibility(light.shadow, s.position);
+  Vec3 arriving = i.irradiance * shade_mesh_visibility(light.shadow, s.position);
+  if (k.bundled) {
+    shade_lean(s, a);
+    arriving = arriving * a.met;
+  }
   const Float spread = shade_spread(k, s, light, a);
   const Vec3 single = shade_single(k, s, light, spread, a);
   if (k.material.model == HairMaterial::Model::kKajiyaKay) return arriving * single * shade_kajiya_kay_transmittance(k, s, way);

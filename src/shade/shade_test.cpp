@@ -459,10 +459,14 @@ TEST(Shade, DenseBundlesShadeThemselves) {
   EXPECT_NEAR(mean(bundled(scene, 50, 20)), mean(bundled(scene, 50, 2000)), 0.2 * loose);
 }
 
-// Fibers that lean at random by σ along both axes, one by one, beside one bundle that knows σ².
-TEST(Shade, LeaningFibersWidenTheLobesOfTheirBundle) {
-  constexpr float kLean = 0.15f;
-  double most_without = 0;
+/// Light of fibers that lean about the y axis, one by one, beside one bundle that knows the variance of their directions, from before, aside and behind.
+/// `lean` gives the tangent of the angle of a random fiber; fibers count as long as the eye, on the z axis, sees them.
+struct LeaningLight {
+  double one_by_one, bundle, bundle_without;
+};
+template <class Lean>
+std::vector<LeaningLight> leaning_light(float variance, const Lean& lean) {
+  std::vector<LeaningLight> found;
   Scene scene = thicket(HairMaterial::Model::kMarschner);
   scene.environment.radiance = {0, 0, 0}, scene.settings.shadows = false;
   for (const Vec3 travels : {Vec3(0.2f, -0.3f, -1), Vec3(-0.9f, -0.6f, -0.2f), Vec3(0.3f, -0.35f, 1)}) {
@@ -470,35 +474,53 @@ TEST(Shade, LeaningFibersWidenTheLobesOfTheirBundle) {
     const LightRig rig = prepare_lights(scene, MeshTracer({}));
     ShadeConstants constants = shade_constants(scene.grooms[0].material, false, rig);
     ShadeBatch batch = random_batch();
-    double one_by_one = 0;
+    double light = 0, seen = 0;
     constexpr int kBatches = 40;
     for (int b = 0; b < kBatches; ++b) {
       batch.count = ShadeBatch::kSize;
+      std::vector<double> shows(ShadeBatch::kSize);
       for (std::uint32_t i = 0; i < ShadeBatch::kSize; ++i) {
         Rng rng(17 + static_cast<std::uint32_t>(b), i);
-        const float radius = kLean * std::sqrt(-2 * std::log(1 - rng.uniform())), angle = 6.2831853f * rng.uniform();
+        const float radius = lean(rng.uniform()), angle = 6.2831853f * rng.uniform();
         const Vec3 tangent = normalize({radius * std::cos(angle), 1, radius * std::sin(angle)});
         batch.tx[i] = tangent.x, batch.ty[i] = tangent.y, batch.tz[i] = tangent.z;
         batch.ex[i] = 0, batch.ey[i] = 0, batch.ez[i] = 1;
         batch.absorb_r[i] = batch.absorb_g[i] = batch.absorb_b[i] = 0.2f;
+        shows[i] = static_cast<double>(std::sqrt(1 - tangent.z * tangent.z));
       }
       pad(batch);
       evaluate_scalar(constants, batch);
-      for (std::size_t i = 0; i < batch.count; ++i)
-        one_by_one += static_cast<double>(batch.r[i]) / (kBatches * ShadeBatch::kSize);
+      for (std::size_t i = 0; i < batch.count; ++i) light += shows[i] * static_cast<double>(batch.r[i]), seen += shows[i];
     }
-    const auto upright = [&](float lean) {
+    const auto upright = [&](float spread) {
       batch.count = 1, batch.tx[0] = 0, batch.ty[0] = 1, batch.tz[0] = 0;
-      batch.fibers[0] = 1, batch.lean[0] = lean * lean;
+      batch.fibers[0] = 1, batch.lean[0] = spread;
       pad(batch);
       evaluate_scalar(constants, batch);
       return static_cast<double>(batch.r[0]);
     };
     constants.bundled = true;
-    EXPECT_NEAR(upright(kLean), one_by_one, 0.12 * one_by_one) << travels.x;
-    most_without = std::max(most_without, std::fabs(upright(0) / one_by_one - 1));
+    found.push_back({light / seen, upright(variance), upright(0)});
+  }
+  return found;
+}
+
+TEST(Shade, LeaningFibersWidenTheLobesOfTheirBundle) {
+  constexpr float kLean = 0.15f;  // along both axes, at random
+  double most_without = 0;
+  for (const LeaningLight& l : leaning_light(kLean * kLean, [](float u) { return kLean * std::sqrt(-2 * std::log(1 - u)); })) {
+    EXPECT_NEAR(l.bundle, l.one_by_one, 0.12 * l.one_by_one);
+    most_without = std::max(most_without, std::fabs(l.bundle_without / l.one_by_one - 1));
   }
   EXPECT_GT(most_without, 0.4);
+}
+
+TEST(Shade, CoilsAreShadedByTheirMeanInclination) {
+  constexpr float kSine = 0.8f, kCosine = 0.6f;  // of the angle at which a coil leans, about its line
+  for (const LeaningLight& l : leaning_light(0.5f * kSine * kSine, [](float) { return kSine / kCosine; })) {
+    EXPECT_NEAR(std::log(l.bundle / l.one_by_one), 0, 0.52);
+    EXPECT_GT(std::fabs(std::log(l.bundle_without / l.one_by_one)), 0.95);
+  }
 }
 
 TEST(Shade, MultipleScatteringBrightensBlondHairInShadow) {
