@@ -45,7 +45,7 @@ PARTS = ("construction", "look", "traced", "worlds", "speed", "dolly", "still", 
 def construction(shop, report, options):
     rows, seconds, shares = [], {}, {}
     for style in options.styles:
-        file, built = groom(shop, style, options)
+        _, file, built = groom(shop, style, options)
         lod = tell(shop, "info", file)["lod"]
         seconds[style], shares[style] = built["told"]["seconds"], lod["bytes"] / lod["groom_bytes"]
         rows.append([style, f"{seconds[style]:.1f}", f"{100 * shares[style]:.1f} %", ", ".join(f"{level['hairs']:,}" for level in lod["levels"])])
@@ -372,7 +372,7 @@ class Cloth(Stage):
         few = ["--strands", str(self.options.strands), "--wales", "6", "--courses", "7"] if not self.options.whole else []
         self.shop.make(["grow", self.style, *few], [], plain)
         self.shop.make(["lod", "build", plain, "--guides", "0"], [plain], file, json_output=True)
-        return file
+        return plain, file
 
 
 def knit(shop, report, options):

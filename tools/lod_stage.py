@@ -31,10 +31,10 @@ def tell(shop, *arguments):
 
 
 def groom(shop, style, options):
-    """(file of a groom with its chain, stamp of building it)."""
+    """(file of a groom, file of it with its chain, stamp of building that)."""
     plain, file = f"grooms/{style}-{options.strands}.pelage", f"grooms/{style}-{options.strands}-lod.pelage"
     shop.make(["grow", style, "--strands", str(options.strands), "--points", "64"], [], plain)
-    return file, shop.make(["lod", "build", plain], [plain], file, json_output=True)
+    return plain, file, shop.make(["lod", "build", plain], [plain], file, json_output=True)
 
 
 class Stage:
@@ -43,13 +43,13 @@ class Stage:
 
     def __init__(self, shop, style, options):
         self.shop, self.options, self.style = shop, options, style
-        self.file = self.grown()
+        self.plain, self.file = self.grown()  # the groom; the same with its chain
         box = tell(shop, "info", self.file)["bounds"]
         self.target = [(a + b) / 2 for a, b in zip(box["lower"], box["upper"])]
         self.size = max(b - a for a, b in zip(box["lower"], box["upper"]))
 
     def grown(self):
-        return groom(self.shop, self.style, self.options)[0]
+        return groom(self.shop, self.style, self.options)[:2]
 
     def scene(self, away, pixels, color="light-brown", light=45, head=True, background=(0.12, 0.13, 0.15)):
         azimuth, elevation = math.radians(self.azimuth), math.radians(ELEVATION)
@@ -131,8 +131,10 @@ class Shot:
         return self.stage.render(f"{self.stage.style}-{self.shot}-mask", scene, "--no-lod", "--view", "coverage", "--float")[0]
 
     def truth(self, cache):
-        file = self.stage.write(self.name, self.scene)
-        return cache.picture([file], [file, self.stage.file], self.stage.options.samples, self.name)[0]
+        """All strands, path traced: of the groom without its chain, so that it stays good when chains are built otherwise."""
+        scene = {**self.scene, "grooms": [{**self.scene["grooms"][0], "file": f"../{self.stage.plain}"}]}
+        file = self.stage.write(f"{self.name}-truth", scene)
+        return cache.picture([file], [file, self.stage.plain], self.stage.options.samples, self.name)[0]
 
     def picture(self, name, arguments):
         """(EXR, PNG, stamp) of a method; arguments are options of `pelage render`."""
