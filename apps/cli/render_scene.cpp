@@ -173,6 +173,7 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.no_filter) s.link.filter = s.swr.filter = false;
   if (o.no_lod) s.swr.lod = s.thick_hairs.on = false;
   if (o.lod_pixels) s.thick_hairs.pixels = *o.lod_pixels;
+  if (o.lod_error) s.thick_hairs.error = *o.lod_error;
   if (o.lod_level) s.thick_hairs.level = *o.lod_level;
   if (o.lod_as)
     s.thick_hairs.shape =

@@ -48,6 +48,11 @@ std::vector<CLI::Option*> add_thick_hair_options(CLI::App& verb, RenderOptions& 
       verb.add_option("--lod-pixels", o.lod_pixels, "Widest thick hairs of grooms that have them (pelage lod build), pixels")
           ->check(CLI::Range(0.1, 64.0))
           ->type_name("PIXELS"),
+      verb.add_option("--lod-error", o.lod_error,
+                      "How much FLIP beside all strands may be predicted of thick hairs (try 0.05), instead of --lod-pixels; "
+                      "0: by width")
+          ->check(CLI::Range(0.0, 0.2))
+          ->type_name("FLIP"),
       verb.add_option("--lod-level", o.lod_level,
                       "One level of thick hairs everywhere, 0 the coarsest, instead of --lod-pixels")
           ->check(CLI::Range(0, 15))

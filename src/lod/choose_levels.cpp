@@ -12,11 +12,34 @@ namespace {
 constexpr std::size_t kPoints = LodHierarchy::kPoints;
 constexpr std::size_t kPrismsPerTask = 16;
 
-/// Segments at whose ends a hair is not at most `most` wide.
-std::uint32_t wide_segments(const HairWidths& widths, float most) {
-  std::uint32_t wide = 0;  // control points
-  for (std::size_t k = 0; k < kPoints; ++k) wide |= std::uint32_t{!(widths.pixels[k] <= most)} << k;
-  return wide | wide >> 1;
+constexpr float kFlipScale2 = 0.0203f, kFlipBend = 0.4f;  // k² and q of predicted_flip()
+
+/// Segments at whose ends a value is not at most `most`.
+std::uint32_t segments_beyond(const std::array<float, kPoints>& values, float most) {
+  std::uint32_t beyond = 0;  // control points
+  for (std::size_t k = 0; k < kPoints; ++k) beyond |= std::uint32_t{!(values[k] <= most)} << k;
+  return beyond | beyond >> 1;
+}
+
+/// The cut of the coarsest hairs whose `measure`, an array with a value a control point, is at most `most`; back where it is at most `back`.
+template <class Measure>
+LodCut choose(const LodHierarchy& lod, const PrismHairs& prisms, const Measure& measure, float most, float back,
+              std::span<const std::uint16_t> before) {
+  LodCut split(lod.hair_count());
+  PELAGE_CHECK(before.empty() || before.size() == split.size());
+  const auto split_where = [&](std::uint32_t hair) {
+    const std::array<float, kPoints> values = measure(hair);
+    const std::uint32_t stays = before.empty() ? 0 : before[hair] & segments_beyond(values, back);
+    return segments_beyond(values, most) | stays;
+  };
+  parallel_for(prisms.prisms(), kPrismsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t l = 0; l < lod.levels(); ++l)
+      for (std::uint32_t h = prisms.hairs(l, begin).first; h < prisms.hairs(l, end - 1).last; ++h) {
+        const std::uint32_t open = l == 0 ? kAllSegments : split[lod.hairs[h].parent];
+        if (open != 0) split[h] = static_cast<std::uint16_t>(open & split_where(h));
+      }
+  });
+  return split;
 }
 
 }  // namespace
@@ -46,23 +69,27 @@ PrismHairs::PrismHairs(const LodHierarchy& lod) : prisms_(lod.empty() ? 0 : lod.
 }
 
 LodCut choose_levels(const LodPlace& place, const PrismHairs& prisms, float pixels, std::span<const std::uint16_t> before) {
-  const LodHierarchy& lod = place.lod;
   const LodEye eye(place);
-  LodCut split(lod.hair_count());
-  PELAGE_CHECK(before.empty() || before.size() == split.size());
-  const auto split_where = [&](std::uint32_t hair) {
-    const HairWidths widths = hair_widths(lod, eye, hair);
-    const std::uint32_t back = before.empty() ? 0 : before[hair] & wide_segments(widths, pixels * kCoarserBelow);
-    return wide_segments(widths, pixels) | back;
-  };
-  parallel_for(prisms.prisms(), kPrismsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t l = 0; l < lod.levels(); ++l)
-      for (std::uint32_t h = prisms.hairs(l, begin).first; h < prisms.hairs(l, end - 1).last; ++h) {
-        const std::uint32_t open = l == 0 ? kAllSegments : split[lod.hairs[h].parent];
-        if (open != 0) split[h] = static_cast<std::uint16_t>(open & split_where(h));
-      }
-  });
-  return split;
+  const auto widths = [&](std::uint32_t hair) { return hair_widths(place.lod, eye, hair).pixels; };
+  return choose(place.lod, prisms, widths, pixels, pixels * kCoarserBelow, before);
+}
+
+LodCut choose_levels_by_error(const LodPlace& place, const PrismHairs& prisms, float flip,
+                              std::span<const std::uint16_t> before) {
+  const LodEye eye(place);
+  const auto variances = [&](std::uint32_t hair) { return hair_errors(place.lod, eye, hair).variance; };
+  const float most = variance_for_flip(flip);
+  return choose(place.lod, prisms, variances, most, most * kCoarserBelow * kCoarserBelow, before);
+}
+
+float predicted_flip(float variance) {
+  return std::isinf(variance) ? std::sqrt(kFlipScale2 / kFlipBend)
+                              : std::sqrt(kFlipScale2 * variance / (1 + kFlipBend * variance));
+}
+
+float variance_for_flip(float flip) {
+  const float square = flip * flip, left = kFlipScale2 - kFlipBend * square;
+  return left > 0 ? square / left : INFINITY;
 }
 
 LodCut one_level(const LodHierarchy& lod, std::size_t level) {

@@ -57,6 +57,17 @@ using LodCut = std::vector<std::uint16_t>;
 LodCut choose_levels(const LodPlace& place, const PrismHairs& prisms, float pixels, std::span<const std::uint16_t> before = {});
 inline constexpr float kCoarserBelow = 0.9f;  ///< of `pixels`
 
+/// The same by what is predicted of the picture instead of its width: the coarsest hairs of which nowhere more than `flip` is to be expected, mean FLIP over their pixels beside
+/// all strands, 0.001…0.2 (predicted_flip of hair_errors()). Hairs come back where the variance is less by kCoarserBelow².
+LodCut choose_levels_by_error(const LodPlace& place, const PrismHairs& prisms, float flip,
+                              std::span<const std::uint16_t> before = {});
+
+/// FLIP that a variance of hair_errors() adds to that of sampling, root of the sum of squares: k √(X/(1 + q X)), which is √(k²/q) at most.
+/// Fitted to 96 pictures (4 hairstyles, 6 distances, every level; docs/lod.md).
+float predicted_flip(float variance);
+/// The variance that is predicted to look so; INFINITY where FLIP cannot become as large.
+float variance_for_flip(float flip);
+
 /// The same level everywhere, the finest where there are fewer; `level` = lod.levels(): strands.
 LodCut one_level(const LodHierarchy& lod, std::size_t level);
 

@@ -12,6 +12,7 @@
 #include "core/rng.h"
 #include "frame/camera_view.h"
 #include "frame/section.h"
+#include "lod/draw_levels.h"
 
 namespace pelage {
 namespace {
@@ -120,6 +121,43 @@ TEST(HairWidths, AreTheShadowsOfTheSections) {
   }
 }
 
+TEST(HairErrors, AreTheGrainOfWhatIsCoveredBelowTheWidthOfTheHair) {
+  const LodHierarchy& lod = groom(HairStyle::kCurly).lod;
+  for (const Look& look : looks()) {
+    const LodEye eye(look.place(lod));
+    for (std::uint32_t h = 0; h < lod.hair_count(); h += 5) {
+      const HairWidths widths = hair_widths(lod, eye, h);
+      const HairErrors errors = hair_errors(lod, eye, h);
+      const double crossed = lod.hairs[h].fibers * static_cast<double>(crossing_ratio(lod.length_ratios[h])),
+                   lean = static_cast<double>(direction_variance(lod.length_ratios[h]));
+      for (std::size_t k = 0; k < kPoints; ++k) {
+        const auto metres = static_cast<double>(widths.metres[k]), pixels = static_cast<double>(widths.pixels[k]);
+        const double covered = 1 - std::exp(-crossed * 2 * static_cast<double>(lod.radii[h * kPoints + k]) / metres);
+        const double expected = (covered + 2 * lean) * pixels * std::max(1 / 1.5 - 1 / pixels, 0.);
+        if (std::isinf(pixels)) {
+          EXPECT_EQ(errors.variance[k], INFINITY);
+          continue;
+        }
+        ASSERT_NEAR(static_cast<double>(errors.variance[k]), expected, 1e-3 * expected + 1e-5) << h << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(PredictedFlip, GrowsWithTheVarianceUpToItsLimitAndBack) {
+  EXPECT_EQ(predicted_flip(0), 0);
+  float before = 0;
+  for (const float x : {0.01f, 0.1f, 0.5f, 2.f, 10.f, 1000.f, INFINITY}) {
+    const float flip = predicted_flip(x);
+    EXPECT_GT(flip, before);
+    if (x < 100) {
+      EXPECT_NEAR(variance_for_flip(flip), x, 1e-3f * x);
+    }
+    before = flip;
+  }
+  EXPECT_EQ(variance_for_flip(before * 1.01f), INFINITY);
+}
+
 TEST(HairWidths, FromItsEndAHairShowsItsLongerAxis) {
   LodHierarchy lod;
   for (std::size_t k = 0; k < kPoints; ++k) {
@@ -225,6 +263,35 @@ TEST(ChooseLevels, AWidthAtTheLimitDoesNotChangeLevelsBackAndForth) {
   for (std::size_t h = 0; h < far.size(); ++h) ASSERT_EQ(far[h] & never[h], never[h]);
   EXPECT_GT(bits(far), bits(never));
   EXPECT_LT(bits(far), bits(cut) * 9 / 10) << "who goes far enough away changes all the same";
+}
+
+// By definition, hair by hair: a segment shows its children where its parent does and more than the limit is predicted at one of its ends.
+TEST(ChooseLevels, ByErrorTheCoarsestIsShownOfWhichNoMoreIsPredicted) {
+  const LodHierarchy& lod = groom(HairStyle::kCurly).lod;
+  const CameraView view = view_from({0, 0, 6});
+  const LodPlace place{lod, view, compose(view.world_to_camera, Affine())};
+  const LodEye eye(place);
+  std::size_t before = SIZE_MAX;
+  for (const float flip : {0.01f, 0.05f, 0.12f}) {
+    const LodCut cut = choose_levels_by_error(place, PrismHairs(lod), flip);
+    std::size_t split = 0;
+    for (std::uint32_t h = 0; h < lod.hair_count(); ++h) {
+      const HairErrors errors = hair_errors(lod, eye, h);
+      const std::uint32_t parent = lod.hairs[h].parent, open = parent == LodHierarchy::kNone ? kAllSegments : cut[parent];
+      for (std::size_t k = 0; k < kLodSegments; ++k) {
+        const float worst = predicted_flip(std::max(errors.variance[k], errors.variance[k + 1]));
+        if (std::fabs(worst / flip - 1) < 1e-4f) continue;  // rounding
+        ASSERT_EQ(cut[h] >> k & 1, (open >> k & 1) && worst > flip) << h << ' ' << k;
+        split += cut[h] >> k & 1;
+      }
+    }
+    EXPECT_LT(split, before);
+    before = split;
+    EXPECT_EQ(choose_levels_by_error(place, PrismHairs(lod), flip, cut), cut) << "a still camera";
+  }
+  EXPECT_GT(before, 0u);
+  const LodCut all = choose_levels_by_error(place, PrismHairs(lod), 0.3f);  // no picture differs by so much
+  EXPECT_EQ(std::count_if(all.begin(), all.end(), [](auto c) { return c != 0; }), 0);
 }
 
 TEST(ChooseLevels, BeforeTheNearPlaneThereAreStrands) {

@@ -1,6 +1,7 @@
 #include "lod/hair_widths.h"
 
 #include "frame/camera_view.h"
+#include "lod/draw_levels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lod/hair_widths.cpp"
@@ -50,6 +51,19 @@ Float shadow(wide::Vec3 major, wide::Vec3 minor, wide::Vec3 along, wide::Vec3 to
   return select(seen_from_its_end, Float(2.f) * sqrt(dot(major, major)), Float(2.f) * sqrt((a * a + b * b) / sine2));
 }
 
+/// Of a hair of which a line across meets `crossed` fibers that lean with the variance `lean`. D/W = 1 − e^{−n d/W}, as covered_width() has it for many fibers.
+void Errors(const LodHierarchy& lod, std::uint32_t hair, float crossed, float lean, const HairWidths& widths, HairErrors& out) {
+  const std::size_t first = std::size_t{hair} * kPoints;
+  for (std::size_t k = 0; k < kPoints; k += static_cast<std::size_t>(wide::lanes())) {
+    const Float metres = max(wide::load(&widths.metres[k]), Float(1e-9f)), pixels = wide::load(&widths.pixels[k]);
+    const Float diameter = Float(2.f) * wide::load(&lod.radii[first + k]);
+    const Float covered = Float(1.f) - wide::m_exp(-(diameter * Float(crossed) / metres));
+    const Float grain = (covered + Float(kLeanGrain * lean)) * pixels;
+    const Float seen = Float(1 / kFinestSeen) - Float(1.f) / max(pixels, Float(1e-9f));
+    store(grain * max(seen, Float(0.f)), &out.variance[k]);
+  }
+}
+
 void Widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair, HairWidths& out) {
   const std::size_t first = std::size_t{hair} * kPoints;
   const Centers centers(&lod.centers[first]);
@@ -74,6 +88,7 @@ HWY_AFTER_NAMESPACE();
 namespace pelage {
 
 HWY_EXPORT(Widths);
+HWY_EXPORT(Errors);
 
 LodEye::LodEye(const LodPlace& at)
     : perspective(at.view.perspective), near_plane(at.view.near_plane), pixels(at.view.focal * similarity_scale(at.to_camera)) {
@@ -87,6 +102,14 @@ HairWidths hair_widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t
   HairWidths widths;
   HWY_DYNAMIC_DISPATCH(Widths)(lod, eye, hair, widths);
   return widths;
+}
+
+HairErrors hair_errors(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair) {
+  const float ratio = lod.length_ratios[hair], fibers = static_cast<float>(lod.hairs[hair].fibers);
+  HairErrors errors;
+  HWY_DYNAMIC_DISPATCH(Errors)
+  (lod, hair, fibers * crossing_ratio(ratio), direction_variance(ratio), hair_widths(lod, eye, hair), errors);
+  return errors;
 }
 
 }  // namespace pelage

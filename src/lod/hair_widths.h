@@ -40,4 +40,15 @@ struct HairWidths {
 };
 HairWidths hair_widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair);
 
+/// By how much the picture of a thick hair differs from that of its fibers, at its control points: variance of light, in units of the contrast of hair.
+///
+/// A band of width W pixels stands for fibers that cover D of it: hair has the same density on the scale of W, and below it is grain, white noise of
+/// density D instead of the fibers' own, which hardly counts. Leaning fibers are bright and dark in turn over lengths of W: more grain, kLeanGrain σ² W.
+/// Eyes see what is coarser than kFinestSeen pixels, so the variance is (D + kLeanGrain σ² W)·(1/kFinestSeen − 1/W), 0 where W is below. INFINITY before the near plane.
+struct HairErrors {
+  alignas(64) std::array<float, LodHierarchy::kPoints> variance;
+};
+HairErrors hair_errors(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair);
+inline constexpr float kLeanGrain = 2, kFinestSeen = 1.5f;
+
 }  // namespace pelage

@@ -52,6 +52,7 @@ ThickHairs::ThickHairs(const Scene& scene) {
 
 LodCut ThickHairs::chosen(const Groom& groom, const ThickHairSettings& settings, const LodPlace& place) {
   if (groom.cards) return HairCards::choose(place, groom.prisms, settings.pixels, settings.level, groom.cut);
+  if (settings.level < 0 && settings.error > 0) return choose_levels_by_error(place, groom.prisms, settings.error, groom.cut);
   if (settings.level < 0) return choose_levels(place, groom.prisms, settings.pixels, groom.cut);
   return one_level(place.lod, std::min(static_cast<std::size_t>(settings.level), place.lod.levels() - 1));
 }
