@@ -318,11 +318,20 @@ PELAGE_LANES_FN Float shade_own_crossings(const ShadePlace& s, Float grain) {
   return s.bundle.reach / max(s.width, Float(1.0e-9f)) * grain;
 }
 
-// By how many widths of a fiber the ways to eye and light part, across the fiber, where the light's has one crossing more.
-PELAGE_LANES_FN Float shade_parting(const ShadePlace& s, const LightConstants& light, Float slope, ShadeAngles a) {
+// How wide what hides is, to eye and light alike, metres: a fiber; of a bundle between one of its fibers, d, and all of them side by side, D, which is what is
+// drawn. They are next to each other more than at random, and maps, which see that of strands, blur bundles over their width. The geometric mean is what is measured
+// (docs/derivations/dual_scattering.md).
+PELAGE_LANES_FN Float shade_hiding_width(const ShadeConstants& k, const ShadePlace& s) {
+  if (!k.bundled) return s.width;
+  return sqrt(s.width * (s.width + Float(2.0f) * s.bundle.wide * s.bundle.coverage));
+}
+
+// By how many widths of what hides the ways to eye and light part, across the fiber, where the light's has one crossing more.
+PELAGE_LANES_FN Float shade_parting(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, Float slope,
+                                    ShadeAngles a) {
   const Float spread = Float(2.0f) - Float(2.0f) * Float(light.mean_cosine);
   const Float apart = sqrt(a.apart2 * Float(light.mean_cosine) + spread);
-  return apart * a.cos_i / max(slope * s.width, Float(1.0e-9f));
+  return apart * a.cos_i / max(slope * shade_hiding_width(k, s), Float(1.0e-9f));
 }
 
 // Of n crossings, those that the eye looks past too, but for what the map knows of them: where it is fine, a place that is seen lies
@@ -334,7 +343,7 @@ PELAGE_LANES_FN Float shade_seen_past(Float n, Float parting, Float grain) {
 PELAGE_LANES_FN ShadeWay shade_way(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
   ShadeWay w{};
   const ShadeCrossings found = shade_crossings(light.opacity, s.position);
-  const Float n = max(found.n - s.depth_shift, Float(0.0f)), parting = shade_parting(s, light, found.slope, a);
+  const Float n = max(found.n - s.depth_shift, Float(0.0f)), parting = shade_parting(k, s, light, found.slope, a);
   if (k.bundled) w.within = scatter_bundle_way(s.bundle, a.cos_phi * Float(light.mean_cosine));
   const Float grain = shade_grain(k, light.opacity, s, w.within);
   Float others = n;
