@@ -172,13 +172,16 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.no_linking) s.link.link = false;
   if (o.no_filter) s.link.filter = s.swr.filter = false;
   if (o.no_lod) s.swr.lod = s.thick_hairs.on = false;
-  if (o.lod_pixels) s.thick_hairs.pixels = *o.lod_pixels;
+  if (o.lod_pixels) s.thick_hairs.pixels = *o.lod_pixels, s.thick_hairs.error = 0;  // of a scene file
   if (o.lod_error) s.thick_hairs.error = *o.lod_error;
   if (o.lod_level) s.thick_hairs.level = *o.lod_level;
   if (o.lod_as)
     s.thick_hairs.shape =
         by_name<LodShape>("--lod-as", *o.lod_as,
                           {{"thick", LodShape::kThickHairs}, {"strands", LodShape::kStrands}, {"cards", LodShape::kCards}});
+  if (o.lod_error && s.thick_hairs.error > 0 && s.thick_hairs.shape == LodShape::kCards)
+    throw UsageError("--lod-error", fmt::format("{:g}", *o.lod_error), "no prediction for cards",
+                     "use --lod-pixels with --lod-as cards");
   if (o.lod_scattering)
     s.thick_hairs.scattering =
         by_name<ThickScattering>("--lod-scattering", *o.lod_scattering,

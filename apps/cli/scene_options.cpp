@@ -50,11 +50,12 @@ std::vector<CLI::Option*> add_thick_hair_options(CLI::App& verb, RenderOptions& 
           ->type_name("PIXELS"),
       verb.add_option("--lod-error", o.lod_error,
                       "How much FLIP beside all strands may be predicted of thick hairs (try 0.05), instead of --lod-pixels; "
-                      "0: by width")
+                      "0: by width. Not for cards")
           ->check(CLI::Range(0.0, 0.2))
+          ->excludes("--lod-pixels")
           ->type_name("FLIP"),
       verb.add_option("--lod-level", o.lod_level,
-                      "One level of thick hairs everywhere, 0 the coarsest, instead of --lod-pixels")
+                      "One level of thick hairs everywhere, 0 the coarsest, instead of --lod-pixels and --lod-error")
           ->check(CLI::Range(0, 15))
           ->type_name("LEVEL"),
       verb.add_option("--lod-scattering", o.lod_scattering, "Thick hairs scatter as the bundle they stand for, or as one fiber")

@@ -260,7 +260,7 @@ struct ThickHairSettings {
   bool on = true;    ///< false: all strands, however small they are on the screen
   float pixels = 2;  ///< ε_w of eq. 16: how wide thick hairs may be on the screen, 0.1…64
   float error =
-      0;  ///< > 0: instead of `pixels`, how much FLIP beside all strands is predicted of thick hairs, 0…0.2 (docs/lod.md)
+      0;  ///< > 0: instead of `pixels`, how much FLIP beside all strands is predicted of thick hairs, 0…0.2; not for cards (docs/lod.md)
   LodShape shape = LodShape::kThickHairs;
   int level = -1;  ///< ≥ 0: this level everywhere (0 is the coarsest, finest where there are fewer); -1: by `pixels` or `error`
   ThickScattering scattering = ThickScattering::kAggregate;

@@ -330,8 +330,9 @@ const Fields<ThickHairSettings>& thick_hair_fields() {
   static const Fields<T> table{
       boolean_field("on", "Whether clusters that are small on the screen are drawn as thick hairs", &T::on),
       number_field("pixels", "Widest thick hairs on the screen", &T::pixels, 0.1, 64),
-      number_field("error", "FLIP that may be predicted of them instead; 0: by `pixels`", &T::error, 0, 0.2),
-      integer_field("level", "The one level that is drawn, 0 the coarsest; -1: by `pixels`", &T::level, -1, 15),
+      number_field("error", "FLIP that may be predicted of them instead; 0: by `pixels`, as cards always are", &T::error, 0,
+                   0.2),
+      integer_field("level", "The one level that is drawn, 0 the coarsest; -1: by `pixels` or `error`", &T::level, -1, 15),
       choice_field("shape", "What stands for clusters: thick hairs, as many of their strands, or cards", &T::shape, shapes),
       choice_field("scattering", "What thick hairs scatter: as the bundle they stand for, or as one fiber", &T::scattering,
                    scattering),

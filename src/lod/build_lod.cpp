@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/shared_progress.h"
-#include "frame/curve_basis.h"
+#include "frame/strand_path.h"
 #include "lod/clusters.h"
 #include "lod/cross_section.h"
 #include "lod/guide_hairs.h"
@@ -94,21 +94,14 @@ void add_levels(const StrandSet& set, const Stations& stations, const LodSetting
   shared.add(settings.levels - lod.levels());
 }
 
-/// Length of a center's curve, not of its control polygon, which is longer: that of an inscribed polygon of four sides a span.
+/// Length of a center's curve, not of its control polygon, which is longer.
 double spline_length(const Vec3* control) {
-  constexpr int kSides = 4;
-  double total = 0;
-  Vec3 before = control[0];
-  for (std::size_t k = 0; k + 1 < kPoints; ++k) {
-    const Vec3 p[4] = {k > 0 ? control[k - 1] : control[0] * 2.f - control[1], control[k], control[k + 1],
-                       k + 2 < kPoints ? control[k + 2] : control[k + 1] * 2.f - control[k]};
-    for (int i = 1; i <= kSides; ++i) {
-      const Vec4 w = basis_weights(CurveBasis::kBSpline, static_cast<float>(i) / kSides);
-      const Vec3 at = kernel::curve_combine(w, p[0], p[1], p[2], p[3]);
-      total += static_cast<double>(length(at - before)), before = at;
-    }
-  }
-  return total;
+  thread_local StrandPath path;
+  thread_local StrandSet center;
+  center.basis = CurveBasis::kBSpline, center.offsets = {0, kPoints}, center.widths = {0};
+  center.points.assign(control, control + kPoints);
+  path.assign(center, 0);
+  return path.length();
 }
 
 /// The curves of a hair, and how its weights grow toward its corners.

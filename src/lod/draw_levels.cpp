@@ -98,19 +98,6 @@ std::vector<StrandPart> strand_parts(const std::vector<std::uint16_t>& segments,
 
 }  // namespace
 
-float crossing_ratio(float length_ratio) { return 0.5f * mean_width(std::max(length_ratio, 1.f), 1); }
-
-float direction_variance(float length_ratio) {
-  const float cosine = 1 / std::max(length_ratio, 1.f);
-  return 0.5f * (1 - cosine * cosine);
-}
-
-float covered_width(float band, float fiber, float fibers) {
-  if (!(fiber < band)) return band > 0 ? band : fiber;
-  if (fibers == 1) return fiber;
-  return band * (1 - kernel::m_exp(fibers * kernel::m_log(1 - fiber / band)));
-}
-
 DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place) { return ThickHairPen(strands, place); }
 
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut& cut, const StrandCuts& cuts, CurveBasis basis,

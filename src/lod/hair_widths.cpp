@@ -1,13 +1,14 @@
 #include "lod/hair_widths.h"
 
 #include "frame/camera_view.h"
-#include "lod/draw_levels.h"
+#include "kernel/scalar.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lod/hair_widths.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/wide-inl.h"
@@ -102,6 +103,19 @@ HairWidths hair_widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t
   HairWidths widths;
   HWY_DYNAMIC_DISPATCH(Widths)(lod, eye, hair, widths);
   return widths;
+}
+
+float crossing_ratio(float length_ratio) { return 0.5f * mean_width(std::max(length_ratio, 1.f), 1); }
+
+float direction_variance(float length_ratio) {
+  const float cosine = 1 / std::max(length_ratio, 1.f);
+  return 0.5f * (1 - cosine * cosine);
+}
+
+float covered_width(float band, float fiber, float fibers) {
+  if (!(fiber < band)) return band > 0 ? band : fiber;
+  if (fibers == 1) return fiber;
+  return band * (1 - kernel::m_exp(fibers * kernel::m_log(1 - fiber / band)));
 }
 
 HairErrors hair_errors(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair) {

@@ -40,6 +40,18 @@ struct HairWidths {
 };
 HairWidths hair_widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair);
 
+/// How wide a thick hair is drawn: of `fibers` fibers with diameter `fiber` that lie at random in a band of width `band`, the mean part of
+/// the band that is covered, band·(1 − (1 − fiber/band)^fibers). One fiber is as wide as itself, dense hair as its band. Metres.
+float covered_width(float band, float fiber, float fibers);
+
+/// Fibers that are `length_ratio` times as long as the center they wind about: how many times as much hair a line of sight across meets.
+/// They lean by δ, cos δ = 1/ratio, toward all sides alike; what leans along the line of sight is seen as short as the center. Mean of
+/// the projected lengths: the perimeter of an ellipse with semi-axes `length_ratio` and 1 over 2π. 1 where the ratio is below 1.
+float crossing_ratio(float length_ratio);
+
+/// Such fibers' variance of direction about the center's, along each axis across it: sin²δ/2. Radians², 0…½.
+float direction_variance(float length_ratio);
+
 /// By how much the picture of a thick hair differs from that of its fibers, at its control points: variance of light, in units of the contrast of hair.
 ///
 /// A band of width W pixels stands for fibers that cover D of it: hair has the same density on the scale of W, and below it is grain, white noise of

@@ -66,6 +66,28 @@ TEST_F(CliLod, ConvertKeepsTheChainOrSaysThatItIsLost) {
   EXPECT_TRUE(read_lod(in("big.pelage").string()).empty());
 }
 
+TEST_F(CliLod, RenderChoosesByWidthOrByPredictedError) {
+  make_hair();
+  ASSERT_EQ(run("lod build hair.pelage -o lod.pelage --guides 12 --memory-share 20").status, 0);
+  const auto segments = [&](const std::string& how) {
+    const Outcome outcome = run("render lod.pelage --size 48x48 -o lod.png --json " + how);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Json told = Json::parse(outcome.out);
+    std::uint64_t drawn = 0;
+    for (const auto& stage : told["stages"])
+      if (stage["stage"] == "lod") drawn += stage["items"].get<std::uint64_t>();
+    return drawn;
+  };
+  const std::uint64_t fine = segments("--lod-error 0.02"), coarse = segments("--lod-error 0.1");
+  EXPECT_LT(coarse, fine);
+  EXPECT_GT(coarse, 0u);
+  EXPECT_EQ(segments("--lod-error 0"), segments(""));
+  Outcome outcome = run("render lod.pelage -o lod.png --lod-as cards --lod-error 0.05");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--lod-error"), HasSubstr("--lod-pixels")));
+  EXPECT_EQ(run("render lod.pelage -o lod.png --lod-pixels 3 --lod-error 0.05").status, 2);
+}
+
 TEST_F(CliLod, MistakesAreNamed) {
   make_hair();
   Outcome outcome = run("lod build hair.pelage -o lod.hair");
