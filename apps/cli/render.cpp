@@ -243,6 +243,11 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
   verb.add_flag("--no-lod", o.no_lod,
                 "All strands, however small they are on the screen: no thick hairs, and hair meshes whole (swr)");
   add_thick_hair_options(verb, o);
+  verb.add_option("--lod-blend", o.lod_blend,
+                  "Thick hairs wider than 1 - B of --lod-pixels fade out while finer ones fade in (try 0.25); 0: at once")
+      ->check(CLI::Range(0.0, 0.9))
+      ->excludes("--lod-level")
+      ->type_name("B");
   verb.add_option("--lod-as", o.lod_as, "What stands for clusters: thick hairs, as many of their strands made wider, or cards")
       ->type_name("thick|strands|cards");
   verb.add_flag("--no-occlusion", o.no_occlusion, "swr: baked occlusion of hair meshes does not dim the light of the probe");

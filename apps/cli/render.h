@@ -29,7 +29,8 @@ struct RenderOptions {
   std::optional<int> samples, frames, subdivisions, opacity_map_size, lod_level;
   std::optional<FrameRange> frame_range;  // by numbers, where `frames` counts
   std::optional<int> frame;
-  std::optional<float> lod_pixels, lod_error, exposure, fov, turn, orbit, convergence, width_scale, environment_rotation;
+  std::optional<float> lod_pixels, lod_error, lod_blend, exposure, fov, turn, orbit, convergence, width_scale,
+      environment_rotation;
   std::vector<float> eye, target, color, melanin;
   std::vector<std::string> layers;
   bool environment_visible = false, no_shadows = false, no_dual_scattering = false, orthographic = false;

@@ -129,6 +129,16 @@ void read_groom_scene(const RenderOptions& options, const Progress& progress, st
   }
 }
 
+/// After the shape and the level.
+void set_blend(const RenderOptions& o, ThickHairSettings& s) {
+  if (o.lod_blend) s.blend = *o.lod_blend;
+  if (o.lod_blend && s.blend > 0) s.level = -1;  // of a scene file
+  if (s.shape == LodShape::kThickHairs) return;
+  if (o.lod_blend && s.blend > 0)
+    throw UsageError("--lod-blend", fmt::format("{:g}", *o.lod_blend), "only thick hairs blend", "leave --lod-as away");
+  s.blend = 0;
+}
+
 void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.size) {
     const std::vector<float> v = numbers("--size", *o.size, 'x', 2);
@@ -174,7 +184,7 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.no_lod) s.swr.lod = s.thick_hairs.on = false;
   if (o.lod_pixels) s.thick_hairs.pixels = *o.lod_pixels, s.thick_hairs.error = 0;  // of a scene file
   if (o.lod_error) s.thick_hairs.error = *o.lod_error;
-  if (o.lod_level) s.thick_hairs.level = *o.lod_level;
+  if (o.lod_level) s.thick_hairs.level = *o.lod_level, s.thick_hairs.blend = 0;  // of a scene file
   if (o.lod_as)
     s.thick_hairs.shape =
         by_name<LodShape>("--lod-as", *o.lod_as,
@@ -182,6 +192,7 @@ void apply_settings(const RenderOptions& o, RenderSettings& s) {
   if (o.lod_error && s.thick_hairs.error > 0 && s.thick_hairs.shape == LodShape::kCards)
     throw UsageError("--lod-error", fmt::format("{:g}", *o.lod_error), "no prediction for cards",
                      "use --lod-pixels with --lod-as cards");
+  set_blend(o, s.thick_hairs);
   if (o.lod_scattering)
     s.thick_hairs.scattering =
         by_name<ThickScattering>("--lod-scattering", *o.lod_scattering,

@@ -135,6 +135,7 @@ void trace_verb(TraceOptions o) {
     Scene scene = make_scene(o.scene, progress, notes);
     scene = at_chosen_frame(o.scene, std::move(scene));
     if (o.scene.orbit) scene.previous_camera = turned(scene.camera, -*o.scene.orbit);
+    scene.settings.thick_hairs.blend = 0;  // of a scene file: a truth of one frame has no levels to come from
     if (o.lod) scene = with_thick_hairs(scene);
     result = trace(scene, o.settings, progress);
     for (const std::string& path : o.scene.outputs) write_output(path, scene, result);

@@ -125,6 +125,9 @@ struct GroomInstance {
   std::shared_ptr<const std::vector<StrandPart>> only;
   /// Of pieces of thick hairs: their cross-sections; the widths of `strands` are then what fibers cover, seen from the eye. Else null.
   std::shared_ptr<const ThickSections> sections;
+  /// Of levels of detail that blend, [points] of `strands`: which share of them is drawn there, 0…1; the other level has the rest. The widths are narrowed by it,
+  /// `sections` are whole. Null: all of them. Not to be traced.
+  std::shared_ptr<const std::vector<float>> shares;
   float lod_lambda = 1.4f;  ///< λ of Lipp 2026, eq. 2, of a hair mesh: 0.01…1000, more keeps more strands
   HairMaterial material;
   std::shared_ptr<const Image> color_map;    ///< of a hair mesh: linear RGB over the groom's u (x) and v (y), instead of the
@@ -261,6 +264,8 @@ struct ThickHairSettings {
   float pixels = 2;  ///< ε_w of eq. 16: how wide thick hairs may be on the screen, 0.1…64
   float error =
       0;  ///< > 0: instead of `pixels`, how much FLIP beside all strands is predicted of thick hairs, 0…0.2; not for cards (docs/lod.md)
+  /// β: a hair that is wider than (1 − β) of what it may be fades out while its children fade in, 0…0.9; 0: it is replaced at once. Of thick hairs, not of one `level`
+  float blend = 0;
   LodShape shape = LodShape::kThickHairs;
   int level = -1;  ///< ≥ 0: this level everywhere (0 is the coarsest, finest where there are fewer); -1: by `pixels` or `error`
   ThickScattering scattering = ThickScattering::kAggregate;

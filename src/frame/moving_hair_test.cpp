@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/rotation.h"
 #include "frame/camera_view.h"
@@ -75,12 +76,15 @@ float tile_depth(const CameraView& view, Vec2 at, int f) {
   return -o.z / d.z;
 }
 
-class RigidMotion : public testing::TestWithParam<float> {};
+/// How levels of detail are chosen: pixels, blend.
+using Levels = std::pair<float, float>;
+class RigidMotion : public testing::TestWithParam<Levels> {};
 
 TEST_P(RigidMotion, IsThatOfTheHead) {
   Scene scene = moving_scene(test::helices(300, 24, 0.004f, 4e-4f), 0);
-  scene.settings.thick_hairs.pixels = GetParam();
-  scene.settings.thick_hairs.on = GetParam() > 0.2f;
+  const auto [pixels, blend] = GetParam();
+  scene.settings.thick_hairs.pixels = pixels, scene.settings.thick_hairs.blend = blend;
+  scene.settings.thick_hairs.on = pixels > 0.2f;
   const Image motion = view_of(scene, View::kMotion, 2), depth = view_of(scene, View::kDepth, 2);
   const CameraView view = make_camera_view(scene.camera, kWidth, kHeight);
   int hairs = 0, tile = 0;
@@ -102,7 +106,9 @@ TEST_P(RigidMotion, IsThatOfTheHead) {
   EXPECT_GT(tile, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(WidestThickHairs, RigidMotion, testing::Values(0.1f, 1.5f, 4.f, 64.f));
+INSTANTIATE_TEST_SUITE_P(WidestThickHairs, RigidMotion,
+                         testing::Values(Levels(0.1f, 0), Levels(1.5f, 0), Levels(4, 0), Levels(64, 0), Levels(2, 0.9f),
+                                         Levels(6, 0.9f)));
 
 /// The curves of a groom as many points: where they are in two poses, in pixels, and their depth now.
 struct Track {

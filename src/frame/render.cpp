@@ -42,6 +42,10 @@ void check_settings(const RenderSettings& s) {
   require(s.thick_hairs.level >= -1 && s.thick_hairs.level < static_cast<int>(LodHierarchy::kMostLevels), "thick_hairs.level",
           s.thick_hairs.level, "-1…15");
   require(s.thick_hairs.pixels >= 0.1f && s.thick_hairs.pixels <= 64, "thick_hairs.pixels", s.thick_hairs.pixels, "0.1…64");
+  require(s.thick_hairs.blend >= 0 && s.thick_hairs.blend <= 0.9f, "thick_hairs.blend", s.thick_hairs.blend, "0…0.9");
+  if (s.thick_hairs.blend > 0 && (s.thick_hairs.shape != LodShape::kThickHairs || s.thick_hairs.level >= 0))
+    throw Error("settings", "thick_hairs.blend", "thick hairs blend, other shapes and one level everywhere do not",
+                "set it to 0");
   require(s.swr.points >= 3 && s.swr.points <= 127, "swr.points", s.swr.points, "3…127");
   require(s.swr.radius >= 1 && s.swr.radius <= 15, "swr.radius", s.swr.radius, "1…15");
   require(s.swr.s_parallel > 0, "swr.s_parallel", s.swr.s_parallel, "a positive number");

@@ -31,6 +31,13 @@ Vec3 direction(const Span& s, CurveBasis basis, float t) {
   return {0, 1, 0};
 }
 
+/// The share of a strand that is drawn at `local` of the span of `s`.
+float share_on(const std::vector<float>& shares, const StrandSet& set, const SegmentRef& s, float local) {
+  constexpr float kLeast = 1e-6f;
+  const std::size_t stride = points_per_span(set.basis), i = set.offsets[s.strand] + s.span * stride;
+  return std::max(shares[i] + (shares[i + stride] - shares[i]) * local, kLeast);
+}
+
 /// The strand that point `place` of a set belongs to.
 std::uint32_t find_strand(const std::vector<std::uint32_t>& offsets, std::uint32_t place) {
   const std::uint64_t strands = offsets.size() - 1;
@@ -78,6 +85,7 @@ StrandSurface surface_at(const Scene& scene, const SegmentNumbering& numbering, 
   r.tangent = normalize(transform_vector(groom.transform, direction(span, set.basis, local)));
   r.u = (static_cast<float>(s.span) + local) / static_cast<float>(spans);
   r.width = (span.width[0] + (span.width[1] - span.width[0]) * local) * groom.width_scale * similarity_scale(groom.transform);
+  if (groom.shares) r.width /= share_on(*groom.shares, set, s, local);
   return r;
 }
 

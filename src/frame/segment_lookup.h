@@ -21,7 +21,7 @@ struct StrandSurface {
   Vec3 position;    ///< metres
   Vec3 tangent;     ///< unit length, root to tip
   float u = 0;      ///< 0 at the root … 1 at the tip, by curve parameter
-  float width = 0;  ///< diameter, metres
+  float width = 0;  ///< diameter, metres; all of it, whatever GroomInstance::shares says
 };
 
 /// The segment with this id: where strands have equally many points at once, else by binary search over the offsets, O(log

@@ -332,6 +332,11 @@ const Fields<ThickHairSettings>& thick_hair_fields() {
       number_field("pixels", "Widest thick hairs on the screen", &T::pixels, 0.1, 64),
       number_field("error", "FLIP that may be predicted of them instead; 0: by `pixels`, as cards always are", &T::error, 0,
                    0.2),
+      number_field(
+          "blend",
+          "Hairs wider than 1 − blend of that fade out while their children fade in; 0: at once. Not with `level`, and of "
+          "thick hairs alone",
+          &T::blend, 0, 0.9),
       integer_field("level", "The one level that is drawn, 0 the coarsest; -1: by `pixels` or `error`", &T::level, -1, 15),
       choice_field("shape", "What stands for clusters: thick hairs, as many of their strands, or cards", &T::shape, shapes),
       choice_field("scattering", "What thick hairs scatter: as the bundle they stand for, or as one fiber", &T::scattering,

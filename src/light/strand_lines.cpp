@@ -89,7 +89,8 @@ StrandLines::StrandLines(const GroomInstance& groom)
     parallel_for(bands_.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const float wide = std::max(mean_width(length(thick->major[i]), length(thick->minor[i])), 1e-9f);
-        bands_[i] = {wide, thick->diameters[i] * thick->fibers[i] / wide};
+        const float fibers = thick->fibers[i] * (groom.shares ? (*groom.shares)[i] : 1);
+        bands_[i] = {wide, thick->diameters[i] * fibers / wide};
       }
     });
   }

@@ -62,6 +62,28 @@ inline constexpr float kCoarserBelow = 0.9f;  ///< of `pixels`
 LodCut choose_levels_by_error(const LodPlace& place, const PrismHairs& prisms, float flip,
                               std::span<const std::uint16_t> before = {});
 
+/// A cut whose levels blend: within a band of widths a hair and its children are both drawn, each with a share of the fibers. A share of control points, straight
+/// between them, so that neighbors along a hair meet without a step. Shares of all levels at a place sum to 1.
+struct BlendedCut {
+  LodCut
+      split;  ///< where a hair's children show (or its strands), with a share or alone; a bit is only set where the parent's is
+  LodCut shown;  ///< where the hair itself does
+  std::vector<float>
+      passed;  ///< [hair_count·kPoints] the share that its children show, 0…1; of hairs whose parent is split, the others': 0
+
+  bool empty() const { return split.empty(); }
+  /// Share that hair `h` itself shows at control point k.
+  float share(const LodHierarchy& lod, std::size_t h, std::size_t k) const;
+  bool operator==(const BlendedCut&) const = default;
+};
+
+/// The hairs of choose_levels(), of which those that are wider than (1 − blend) of `pixels` fade out, and their children in, in proportion to their width. Depends on
+/// nothing but widths, so there is no hysteresis. A hair that is one with what it would show instead, a single child or strand, is replaced at once: two of the
+/// same in one place would hide each other. 0 < blend < 1.
+BlendedCut choose_blended(const LodPlace& place, const PrismHairs& prisms, float pixels, float blend);
+/// The same by what is predicted of the picture, from (1 − blend)² of the variance on.
+BlendedCut choose_blended_by_error(const LodPlace& place, const PrismHairs& prisms, float flip, float blend);
+
 /// FLIP that a variance of hair_errors() adds to that of sampling, root of the sum of squares: k √(X/(1 + q X)), which is √(k²/q) at most.
 /// Fitted to 96 pictures (4 hairstyles, 6 distances, every level; docs/lod.md).
 float predicted_flip(float variance);

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "kernel/scalar.h"
+#include "lod/fading_strands.h"
 
 namespace pelage {
 namespace {
@@ -17,7 +18,8 @@ constexpr std::size_t kStrandsPerTask = 4096;
 /// Draws thick hairs of one groom as an eye sees them.
 class ThickHairPen {
  public:
-  ThickHairPen(const StrandSet& set, const LodPlace& place) : set_(set), lod_(place.lod), eye_(place) {}
+  ThickHairPen(const StrandSet& set, const LodPlace& place, const BlendedCut* blend)
+      : set_(set), lod_(place.lod), eye_(place), blend_(blend) {}
 
   void operator()(std::uint32_t h, std::size_t level, std::uint16_t segments, Pieces& out) const {
     const HairWidths bands = hair_widths(lod_, eye_, h);
@@ -30,7 +32,9 @@ class ThickHairPen {
       const std::size_t i = std::size_t{h} * kPoints + k;
       const float fiber = 2 * lod_.radii[i];
       out.hairs.points.push_back(hair_knot(lod_, h, k));
-      out.hairs.widths.push_back(ends >> k & 1 ? covered_width(bands.metres[k], fiber, fibers) : 0);
+      const float share = blend_ ? blend_->share(lod_, h, k) : 1;
+      if (blend_) out.shares.push_back(share);
+      out.hairs.widths.push_back(ends >> k & 1 ? covered_width(bands.metres[k], fiber, share * fibers) : 0);
       sections.major.push_back(lod_.major[i]), sections.minor.push_back(lod_.minor[i]);
       sections.fibers.push_back(fibers), sections.diameters.push_back(fiber), sections.spreads.push_back(spread);
       sections.twists.push_back(twist);
@@ -49,10 +53,12 @@ class ThickHairPen {
   const StrandSet& set_;
   const LodHierarchy& lod_;
   const LodEye eye_;
+  const BlendedCut* blend_;
 };
 
-/// What stands for the hairs that `cut` shows, level by level.
-Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster& draw) {
+/// What stands for the hairs of which `shown(hair)` is some segments, level by level.
+template <class Shown>
+Pieces make_pieces(const LodHierarchy& lod, const Shown& shown, const DrawCluster& draw) {
   std::vector<Pieces> parts;
   for (std::size_t level = 0; level < lod.levels(); ++level) {
     const std::size_t first = lod.level_offsets[level], count = lod.level(level).size(), before = parts.size();
@@ -61,10 +67,10 @@ Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster
       Pieces& part = parts[before + begin / kHairsPerTask];
       part.hairs.offsets = {0};
       std::size_t shown_hairs = 0;
-      for (std::size_t h = first + begin; h < first + end; ++h) shown_hairs += shown_segments(lod, cut, h) != 0;
+      for (std::size_t h = first + begin; h < first + end; ++h) shown_hairs += shown(h) != 0;
       reserve(shown_hairs * kPoints, shown_hairs, part);
       for (std::size_t h = first + begin; h < first + end; ++h)
-        if (const std::uint16_t shown = shown_segments(lod, cut, h)) draw(static_cast<std::uint32_t>(h), level, shown, part);
+        if (const std::uint16_t segments = shown(h)) draw(static_cast<std::uint32_t>(h), level, segments, part);
     });
   }
   return join(parts);
@@ -73,11 +79,7 @@ Pieces make_pieces(const LodHierarchy& lod, const LodCut& cut, const DrawCluster
 /// Segments of every strand that are drawn as they are: those where its finest hair is split.
 std::vector<std::uint16_t> strand_segments(const LodHierarchy& lod, const LodCut& cut) {
   std::vector<std::uint16_t> segments(lod.strand_count());
-  const std::size_t first = lod.level_offsets[lod.levels() - 1];
-  parallel_for(lod.hair_count() - first, kHairsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t h = first + begin; h < first + end; ++h)
-      for (std::uint32_t i = 0; i < lod.hairs[h].fibers; ++i) segments[lod.order[lod.hairs[h].first_strand + i]] = cut[h];
-  });
+  for_each_finest_strand(lod, [&](std::size_t hair, std::uint32_t strand) { segments[strand] = cut[hair]; });
   return segments;
 }
 
@@ -96,29 +98,69 @@ std::vector<StrandPart> strand_parts(const std::vector<std::uint16_t>& segments,
   return all;
 }
 
+/// Whether these segments are all that there is of the strands.
+bool all_whole(const std::vector<std::uint16_t>& segments) {
+  return std::all_of(segments.begin(), segments.end(), [](std::uint16_t s) { return s == kAllSegments; });
+}
+
+/// Adds strands of `groom` as they are.
+void add_strands(const GroomInstance& groom, std::vector<StrandPart> parts, std::vector<GroomInstance>& drawn) {
+  if (parts.empty()) return;
+  drawn.push_back(groom);
+  drawn.back().only = std::make_shared<const std::vector<StrandPart>>(std::move(parts));
+}
+
+/// Adds what was made of `groom`, and returns where it is; null where it is nothing.
+GroomInstance* add_pieces(const GroomInstance& groom, const char* what, Pieces& pieces, std::vector<GroomInstance>& drawn) {
+  if (pieces.parts.empty()) return nullptr;
+  GroomInstance& made = drawn.emplace_back(groom);
+  made.name += what;
+  made.strands = std::make_shared<const StrandSet>(std::move(pieces.hairs));
+  made.only = std::make_shared<const std::vector<StrandPart>>(std::move(pieces.parts));
+  if (!pieces.shares.empty()) made.shares = std::make_shared<const std::vector<float>>(std::move(pieces.shares));
+  return &made;
+}
+
+/// Adds thick hairs of `groom`, or what stands for them.
+void add_hairs(const GroomInstance& groom, CurveBasis basis, Pieces pieces, std::vector<GroomInstance>& drawn) {
+  pieces.hairs.basis = basis;
+  if (GroomInstance* hairs = add_pieces(groom, " (thick hairs)", pieces, drawn))
+    hairs->sections = std::make_shared<const ThickSections>(std::move(pieces.sections));
+}
+
 }  // namespace
 
-DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place) { return ThickHairPen(strands, place); }
+DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place, const BlendedCut* blend) {
+  return ThickHairPen(strands, place, blend);
+}
 
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut& cut, const StrandCuts& cuts, CurveBasis basis,
                                        const DrawCluster& draw) {
   const LodHierarchy& lod = *groom.lod;
   const std::vector<std::uint16_t> segments = strand_segments(lod, cut);
-  if (std::all_of(segments.begin(), segments.end(), [](std::uint16_t s) { return s == kAllSegments; })) return {groom};
+  if (all_whole(segments)) return {groom};
   std::vector<GroomInstance> drawn;
-  std::vector<StrandPart> parts = strand_parts(segments, cuts);
-  if (!parts.empty()) {
-    drawn.push_back(groom);
-    drawn.back().only = std::make_shared<const std::vector<StrandPart>>(std::move(parts));
-  }
-  Pieces pieces = make_pieces(lod, cut, draw);
-  if (pieces.hairs.points.empty()) return drawn;
-  pieces.hairs.basis = basis;
-  GroomInstance& hairs = drawn.emplace_back(groom);
-  hairs.name += " (thick hairs)";
-  hairs.strands = std::make_shared<const StrandSet>(std::move(pieces.hairs));
-  hairs.sections = std::make_shared<const ThickSections>(std::move(pieces.sections));
-  hairs.only = std::make_shared<const std::vector<StrandPart>>(std::move(pieces.parts));
+  add_strands(groom, strand_parts(segments, cuts), drawn);
+  add_hairs(groom, basis,
+            make_pieces(
+                lod, [&](std::size_t h) { return shown_segments(lod, cut, h); }, draw),
+            drawn);
+  return drawn;
+}
+
+std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const BlendedCut& cut, const StrandCuts& cuts,
+                                       CurveBasis basis, const DrawCluster& draw) {
+  const LodHierarchy& lod = *groom.lod;
+  const StrandSegments segments = strand_segments(lod, cut);
+  if (all_whole(segments.whole)) return {groom};
+  std::vector<GroomInstance> drawn;
+  add_strands(groom, strand_parts(segments.whole, cuts), drawn);
+  Pieces fading = fading_strands(*groom.strands, lod, cut, segments, cuts);
+  add_pieces(groom, " (fading strands)", fading, drawn);
+  add_hairs(groom, basis,
+            make_pieces(
+                lod, [&](std::size_t h) { return cut.shown[h]; }, draw),
+            drawn);
   return drawn;
 }
 

@@ -113,7 +113,7 @@ float direction_variance(float length_ratio) {
 }
 
 float covered_width(float band, float fiber, float fibers) {
-  if (!(fiber < band)) return band > 0 ? band : fiber;
+  if (!(fiber < band)) return (band > 0 ? band : fiber) * std::min(fibers, 1.f);
   if (fibers == 1) return fiber;
   return band * (1 - kernel::m_exp(fibers * kernel::m_log(1 - fiber / band)));
 }

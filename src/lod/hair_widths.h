@@ -41,7 +41,8 @@ struct HairWidths {
 HairWidths hair_widths(const LodHierarchy& lod, const LodEye& eye, std::uint32_t hair);
 
 /// How wide a thick hair is drawn: of `fibers` fibers with diameter `fiber` that lie at random in a band of width `band`, the mean part of
-/// the band that is covered, band·(1 − (1 − fiber/band)^fibers). One fiber is as wide as itself, dense hair as its band. Metres.
+/// the band that is covered, band·(1 − (1 − fiber/band)^fibers). One fiber is as wide as itself, dense hair as its band. A share of them, s·fibers and (1 − s)·fibers, passes
+/// in product what all of them do; below one fiber it goes to 0. Metres.
 float covered_width(float band, float fiber, float fibers);
 
 /// Fibers that are `length_ratio` times as long as the center they wind about: how many times as much hair a line of sight across meets.

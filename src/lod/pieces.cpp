@@ -27,6 +27,14 @@ Vec3 hair_knot(const LodHierarchy& lod, std::size_t hair, std::size_t k) {
   return inside ? (c[k - 1] + c[k] * 4.f + c[k + 1]) / 6.f : c[k];
 }
 
+void for_each_finest_strand(const LodHierarchy& lod, const std::function<void(std::size_t, std::uint32_t)>& body) {
+  const std::size_t first = lod.level_offsets[lod.levels() - 1];
+  parallel_for(lod.hair_count() - first, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t h = first + begin; h < first + end; ++h)
+      for (std::uint32_t i = 0; i < lod.hairs[h].fibers; ++i) body(h, lod.order[lod.hairs[h].first_strand + i]);
+  });
+}
+
 void end_strand(StrandSet& set) { set.offsets.push_back(static_cast<std::uint32_t>(set.points.size())); }
 
 void append_attributes(const StrandSet& from, std::size_t s, StrandSet& to) {
@@ -65,9 +73,10 @@ void reserve(std::size_t points, std::size_t curves, Pieces& pieces) {
 
 Pieces join(const std::vector<Pieces>& parts) {
   Pieces all;
-  std::size_t points = 0, curves = 0;
-  for (const Pieces& part : parts) points += part.hairs.points.size(), curves += part.sections.levels.size();
-  reserve(points, curves, all);
+  std::size_t points = 0, curves = 0, shares = 0;
+  for (const Pieces& part : parts)
+    points += part.hairs.points.size(), curves += part.sections.levels.size(), shares += part.shares.size();
+  reserve(points, curves, all), all.shares.reserve(shares);
   StrandSet& hairs = all.hairs;
   ThickSections& sections = all.sections;
   hairs.offsets = {0};
@@ -87,15 +96,25 @@ Pieces join(const std::vector<Pieces>& parts) {
     gather(
         sections.*member, [&](const Pieces& p) -> auto& { return p.sections.*member; });
   };
-  const std::function<void()> arrays[] = {
-      [&] { strands(&StrandSet::points); },       [&] { places(&ThickSections::major); },
-      [&] { places(&ThickSections::minor); },     [&] { strands(&StrandSet::widths); },
-      [&] { places(&ThickSections::fibers); },    [&] { places(&ThickSections::diameters); },
-      [&] { places(&ThickSections::spreads); },   [&] { places(&ThickSections::twists); },
-      [&] { places(&ThickSections::levels); },    [&] { strands(&StrandSet::colors); },
-      [&] { strands(&StrandSet::transparency); }, [&] { strands(&StrandSet::root_uv); },
-      [&] { strands(&StrandSet::strand_id); },    [&] { strands(&StrandSet::guide_id); },
-      [&] { strands(&StrandSet::group); }};
+  const std::function<void()> arrays[] = {[&] { strands(&StrandSet::points); },
+                                          [&] { places(&ThickSections::major); },
+                                          [&] { places(&ThickSections::minor); },
+                                          [&] { strands(&StrandSet::widths); },
+                                          [&] { places(&ThickSections::fibers); },
+                                          [&] { places(&ThickSections::diameters); },
+                                          [&] { places(&ThickSections::spreads); },
+                                          [&] { places(&ThickSections::twists); },
+                                          [&] { places(&ThickSections::levels); },
+                                          [&] { strands(&StrandSet::colors); },
+                                          [&] { strands(&StrandSet::transparency); },
+                                          [&] { strands(&StrandSet::root_uv); },
+                                          [&] { strands(&StrandSet::strand_id); },
+                                          [&] { strands(&StrandSet::guide_id); },
+                                          [&] { strands(&StrandSet::group); },
+                                          [&] {
+                                            gather(
+                                                all.shares, [](const Pieces& p) -> auto& { return p.shares; });
+                                          }};
   parallel_for(std::size(arrays), 1, [&](std::size_t i, std::size_t) { arrays[i](); });
   return all;
 }

@@ -27,11 +27,15 @@ void for_each_run(std::uint32_t segments, const Body& body) {
   }
 }
 
+/// Calls body(hair, strand) for every strand of the finest level, in parallel.
+void for_each_finest_strand(const LodHierarchy& lod, const std::function<void(std::size_t hair, std::uint32_t strand)>& body);
+
 /// What stands for clusters of strands: whole curves, and which parts of them are drawn.
 struct Pieces {
   StrandSet hairs;
   ThickSections sections;         ///< of `hairs`
   std::vector<StrandPart> parts;  ///< of `hairs`, ascending
+  std::vector<float> shares;      ///< of `hairs`, GroomInstance::shares; none where levels do not blend
 };
 
 /// Appends what stands for the cluster of a hair along the segments whose bits are set, of which there are some. Called from several threads

@@ -1,5 +1,7 @@
 #include "lod/strand_cuts.h"
 
+#include <algorithm>
+
 #include "core/parallel.h"
 #include "frame/strand_part.h"
 
@@ -39,6 +41,15 @@ StrandCuts::StrandCuts(const StrandSet& strands) : cuts_(strands.strand_count() 
 StrandPart StrandCuts::part(std::uint32_t strand, std::size_t first, std::size_t last) const {
   const std::uint32_t* cuts = &cuts_[std::size_t{strand} * kPoints];
   return {strand, cuts[first], cuts[last] - cuts[first]};
+}
+
+float StrandCuts::between(std::uint32_t strand, const float* at, float spans) const {
+  const std::uint32_t* cuts = &cuts_[std::size_t{strand} * kPoints];
+  std::size_t k = 0;
+  while (k + 2 < kPoints && static_cast<float>(cuts[k + 1]) <= spans) ++k;
+  const auto first = static_cast<float>(cuts[k]), last = static_cast<float>(cuts[k + 1]);
+  const float t = last > first ? std::clamp((spans - first) / (last - first), 0.f, 1.f) : 1;
+  return at[k] + (at[k + 1] - at[k]) * t;
 }
 
 }  // namespace pelage

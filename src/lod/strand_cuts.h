@@ -20,6 +20,9 @@ class StrandCuts {
   /// The part of a strand along segments first … last − 1; of no spans where it has too few.
   StrandPart part(std::uint32_t strand, std::size_t first, std::size_t last) const;
 
+  /// What `at` [kPoints], values at the control points, is at the end of so many spans from the root: straight between the cuts.
+  float between(std::uint32_t strand, const float* at, float spans) const;
+
  private:
   std::vector<std::uint32_t> cuts_;  // [strands · kPoints], spans from the root
 };

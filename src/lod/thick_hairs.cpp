@@ -44,7 +44,7 @@ ThickHairs::ThickHairs(const Scene& scene) {
   for (std::size_t g = 0; g < scene.grooms.size(); ++g) {
     const GroomInstance& groom = scene.grooms[g];
     if (!groom.lod || !groom.strands) continue;
-    grooms_.push_back({g, PrismHairs(*groom.lod), StrandCuts(*groom.strands), {}, {}, {}});
+    grooms_.push_back({g, PrismHairs(*groom.lod), StrandCuts(*groom.strands), {}, {}, {}, {}});
     if (shape == LodShape::kStrands) grooms_.back().thickened.emplace(*groom.lod);
     if (shape == LodShape::kCards) grooms_.back().cards.emplace(*groom.strands, *groom.lod);
   }
@@ -57,8 +57,16 @@ LodCut ThickHairs::chosen(const Groom& groom, const ThickHairSettings& settings,
   return one_level(place.lod, std::min(static_cast<std::size_t>(settings.level), place.lod.levels() - 1));
 }
 
+BlendedCut ThickHairs::blended(const Groom& groom, const ThickHairSettings& settings, const LodPlace& place) {
+  if (settings.error > 0) return choose_blended_by_error(place, groom.prisms, settings.error, settings.blend);
+  return choose_blended(place, groom.prisms, settings.pixels, settings.blend);
+}
+
 std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const LodPlace& place, const Groom& groom) {
   const StrandSet& set = *instance.strands;
+  if (!groom.blended.empty())
+    return draw_levels(instance, groom.blended, groom.cuts, CurveBasis::kCatmullRom,
+                       thick_hair_pen(set, place, &groom.blended));
   if (groom.cards) return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kLinear, groom.cards->pen(set, place));
   if (groom.thickened)
     return draw_levels(instance, groom.cut, groom.cuts, set.basis, groom.thickened->pen(set, place.lod, groom.cuts));
@@ -81,9 +89,12 @@ void ThickHairs::choose(const Scene& scene, const CameraView& view) {
   for (Groom& groom : grooms_) {
     const LodPlace place = place_of(scene.grooms[groom.number], view);
     pixels = std::max(pixels, pixels_wide(groom.prisms.box(), view, place.to_camera));
-    LodCut cut = chosen(groom, scene.settings.thick_hairs, place);
-    changed_ = changed_ || cut != groom.cut;
-    groom.cut = std::move(cut);
+    BlendedCut blend;
+    LodCut cut;
+    if (scene.settings.thick_hairs.blend > 0) blend = blended(groom, scene.settings.thick_hairs, place);
+    else cut = chosen(groom, scene.settings.thick_hairs, place);
+    changed_ = changed_ || cut != groom.cut || blend != groom.blended;
+    groom.cut = std::move(cut), groom.blended = std::move(blend);
   }
   const int size = map_size(pixels, scene.settings.opacity_map_size);
   changed_ = changed_ || size != map_size_;

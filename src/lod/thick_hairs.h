@@ -45,9 +45,11 @@ class ThickHairs {
     PrismHairs prisms;
     StrandCuts cuts;
     LodCut cut;
+    BlendedCut blended;                         // where levels blend, instead of `cut`
     std::optional<ThickenedStrands> thickened;  // where they stand for clusters
     std::optional<HairCards> cards;             // where they do
   };
+  static BlendedCut blended(const Groom& groom, const ThickHairSettings& settings, const LodPlace& place);
   static LodCut chosen(const Groom& groom, const ThickHairSettings& settings, const LodPlace& place);
   static std::vector<GroomInstance> draw(const GroomInstance& instance, const LodPlace& place, const Groom& groom);
   std::vector<Groom> grooms_;

@@ -69,8 +69,8 @@ class Fingerprint {
     add_array(s.points), add_array(s.widths), add_array(s.offsets), add_array(s.colors);
   }
   void add_one(const GroomInstance& groom) {
-    const auto& [name, strands, hair_mesh, lod, only, sections, lod_lambda, material, color_map, color_along, roughness_map,
-                 roughness_along, tilt_map, tilt_along, transform, width_scale] = groom;
+    const auto& [name, strands, hair_mesh, lod, only, sections, shares, lod_lambda, material, color_map, color_along,
+                 roughness_map, roughness_along, tilt_map, tilt_along, transform, width_scale] = groom;
     add(material, color_map, color_along, roughness_map, roughness_along, tilt_map, tilt_along, transform, width_scale);
     add(strands != nullptr);
     if (strands) add(*strands);

@@ -69,6 +69,8 @@ void check_groom(const GroomInstance& g, const std::string& where) {
   if (!g.strands) throw Error(where, "strands", "a groom without strands", "set GroomInstance::strands");
   validate(*g.strands, where);
   if (g.sections) check_sections(g, where);
+  if (g.shares)
+    throw Error(where, "shares", "levels of detail that blend are not traced", "set settings.thick_hairs.blend to 0");
   const HairMaterial& m = g.material;
   require(m.color, where, "color"), require(g.transform, where, "transform"), require(g.width_scale, where, "width_scale");
   for (const float v :

@@ -88,6 +88,25 @@ TEST_F(CliLod, RenderChoosesByWidthOrByPredictedError) {
   EXPECT_EQ(run("render lod.pelage -o lod.png --lod-pixels 3 --lod-error 0.05").status, 2);
 }
 
+TEST_F(CliLod, LevelsBlendWhereTheyAreAskedTo) {
+  make_hair();
+  ASSERT_EQ(run("lod build hair.pelage -o lod.pelage --guides 12 --memory-share 20").status, 0);
+  const auto rendered = [&](const std::string& how) {
+    const Outcome outcome = run("render lod.pelage --size 48x48 -o lod.exr " + how);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return bytes("lod.exr");
+  };
+  const std::string whole = rendered("");
+  EXPECT_EQ(rendered("--lod-blend 0"), whole);
+  EXPECT_NE(rendered("--lod-blend 0.9"), whole);
+  EXPECT_NE(rendered("--lod-blend 0.9 --lod-error 0.03"), rendered("--lod-error 0.03"));
+  Outcome outcome = run("render lod.pelage -o lod.png --lod-as cards --lod-blend 0.5");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--lod-blend"), HasSubstr("--lod-as")));
+  EXPECT_EQ(run("render lod.pelage -o lod.png --lod-level 1 --lod-blend 0.5").status, 2);
+  EXPECT_EQ(run("render lod.pelage -o lod.png --lod-blend 1").status, 2);
+}
+
 TEST_F(CliLod, MistakesAreNamed) {
   make_hair();
   Outcome outcome = run("lod build hair.pelage -o lod.hair");
