@@ -36,6 +36,8 @@ METHODS = {  # name: (label, options of `pelage render`)
     "bundles": ("thinned, as bundles", ["--lod-as", "strands"]),
     "cards": ("cards", ["--lod-as", "cards", *FIBER])}
 SHAPES = ("thick", "strands", "cards")
+DOLLY = {name: METHODS[name] for name in ("full", *SHAPES)}
+DOLLY["blend"] = ("thick hairs that blend", ["--lod-pixels", "2.3", "--lod-blend", "0.25"])
 PARTS = ("construction", "look", "traced", "worlds", "speed", "dolly", "still", "motion", "aggregate", "knit")
 
 
@@ -240,18 +242,17 @@ def dolly(shop, report, options):
     report.text("A dolly, from 30 % of the screen to 1 % (figure 6)", heading=True)
     report.text(f"{options.frames} frames of {options.dolly_size}² pixels, hair alone on black, each made by itself. PSNR is between neighboring frames as a display shows them; "
                 "light and coverage are those of thick hairs over those of all strands, in sum over the picture, radiance is light over coverage.")
-    names = ("full", *SHAPES)
     for style in options.dolly_styles:
-        stage, ratios, psnr = Stage(shop, style, options), {}, {name: [] for name in names}
+        stage, ratios, psnr = Stage(shop, style, options), {}, {name: [] for name in DOLLY}
         first, last = (stage.distance(s) for s in (0.3, 0.01))
         away = [first * (last / first) ** (i / (options.frames - 1)) for i in range(options.frames)]
         before = {}
         for i, distance in enumerate(away):
             light, cover = dolly_frame(shop, stage, f"dolly-{style}-{i}", distance, options)
-            for name in names:
+            for name in DOLLY:
                 if i:
                     psnr[name].append(compare(shop, light[name], before[name], "--tone-map", "aces", "--metrics", "psnr")["psnr"])
-            for name in SHAPES:
+            for name in [name for name in DOLLY if name != "full"]:
                 energy = compare(shop, light[name], light["full"], "--metrics", "energy")["energy"]
                 covered = compare(shop, cover[name], cover["full"], "--metrics", "energy")["energy"]
                 ratios.setdefault(name, []).append((covered, energy / covered))
@@ -263,15 +264,14 @@ def dolly(shop, report, options):
 def dolly_frame(shop, stage, name, distance, options):
     """({method: picture}, {method: its coverage})."""
     scene, light, cover = stage.scene(distance, options.dolly_size, head=False, background=(0, 0, 0)), {}, {}
-    for method in ("full", *SHAPES):
-        arguments = METHODS[method][1]
+    for method, (_, arguments) in DOLLY.items():
         light[method], _ = stage.render(name, scene, *arguments, "--float", output=f"pictures/{name}-{method}.exr")
         cover[method], _ = stage.render(name, scene, *arguments, "--float", "--view", "coverage", output=f"pictures/{name}-{method}-coverage.exr")
     return light, cover
 
 
 def dolly_tables(shop, report, style, away, psnr, ratios):
-    labels = {name: METHODS[name][0] for name in psnr}
+    labels = {name: label for name, (label, _) in DOLLY.items()}
     gains = [a - b for a, b in zip(psnr["thick"], psnr["full"])]
     report.table([f"PSNR between frames, {style}", "mean, dB", "least, dB", "least over all strands, dB"],
                  [[labels[n], f"{statistics.mean(v):.2f}", f"{min(v):.2f}", f"{min(a - b for a, b in zip(v, psnr['full'])):+.2f}"] for n, v in psnr.items()])

@@ -294,6 +294,7 @@ void add_render(CLI::App& app) {
       "  pelage render hair.tfx -o reference.exr --method ssaa --spp 64\n"
       "  pelage render hair.tfx -o turn.####.exr --method taa --orbit 0.5 --frames 48 --layers motion\n"
       "  pelage render hair.tfx -o linked.png --method link --alpha coverage\n"
+      "  pelage render hair_lod.pelage -o away.png --lod-pixels 2.3 --lod-blend 0.25\n"
       "  pelage render curls.hairmesh -o curls.png --method swr\n"
       "  pelage render bob.hairmesh -o eye.%V.png --method swr --stereo=0.07\n"
       "  pelage render scene.json -o picture.png -o picture.exr --layers Z,coverage\n"

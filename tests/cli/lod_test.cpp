@@ -94,12 +94,14 @@ TEST_F(CliLod, LevelsBlendWhereTheyAreAskedTo) {
   const auto rendered = [&](const std::string& how) {
     const Outcome outcome = run("render lod.pelage --size 48x48 -o lod.exr " + how);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return bytes("lod.exr");
+    return read_image(in("lod.exr").string()).pixels;
   };
-  const std::string whole = rendered("");
+  const std::vector<float> whole = rendered("");
   EXPECT_EQ(rendered("--lod-blend 0"), whole);
   EXPECT_NE(rendered("--lod-blend 0.9"), whole);
-  EXPECT_NE(rendered("--lod-blend 0.9 --lod-error 0.03"), rendered("--lod-error 0.03"));
+  const std::vector<float> by_error = rendered("--lod-blend 0.9 --lod-error 0.03");
+  EXPECT_NE(by_error, rendered("--lod-error 0.03"));
+  EXPECT_NE(by_error, rendered("--lod-blend 0.9"));
   Outcome outcome = run("render lod.pelage -o lod.png --lod-as cards --lod-blend 0.5");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("--lod-blend"), HasSubstr("--lod-as")));
