@@ -87,27 +87,73 @@ void accumulate_layers(OpacityMap& map) {
 struct Drawing {
   OpacityMap map;
   Buffer<std::uint32_t> depth_bits;
+  std::array<Buffer<std::uint32_t>, SplatTarget::kMaxLevels> coarser;  // levels from 1 on
   SplatTarget target;
 };
 
-Drawing begin_drawing(const CameraView& view, const Bounds& box, std::size_t strand_stride) {
+/// Texels of the widest band of all.
+float widest_band(const std::vector<StrandLines>& grooms, const CameraView& view) {
+  float widest = 0;
+  for (const StrandLines& lines : grooms) {
+    if (lines.bounds().empty()) continue;
+    float nearest = INFINITY;
+    for (const Vec3 corner : corners(lines.reach())) nearest = std::min(nearest, to_camera(view, corner).z);
+    widest = std::max(widest, lines.widest_band() / texel_size(view, std::max(nearest, view.near_plane)));
+  }
+  return widest;
+}
+
+/// Levels 0 … of which the last is the coarsest that a band of `widest` texels is drawn into.
+void begin_levels(float widest, Drawing& d) {
+  SplatTarget& target = d.target;
+  const auto width = static_cast<float>(d.map.view.width), height = static_cast<float>(d.map.view.height);
+  target.level_count = 0;
+  for (float scale = 1; target.level_count < SplatTarget::kMaxLevels && (scale == 1 || widest * scale >= kBandTexels);
+       scale *= 0.5f) {
+    const auto k = static_cast<std::size_t>(target.level_count++);
+    SplatLevel& level = target.levels[k];
+    level.scale = scale, level.width = width * scale, level.height = height * scale;
+    level.columns = static_cast<std::int32_t>(std::ceil(level.width)),
+    level.rows = static_cast<std::int32_t>(std::ceil(level.height));
+    Buffer<std::uint32_t>& texels = k == 0 ? d.map.crossings : d.coarser[k];
+    texels.resize(static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows) * OpacityMap::kLayers);
+    fill_parallel(texels.data(), texels.size(), 0);
+    level.crossings = texels.data();
+  }
+}
+
+/// What level k + 1 has is what each of its four texels of level k has: expectations know no area.
+void add_coarser(const SplatLevel& coarse, const SplatLevel& fine) {
+  parallel_for(static_cast<std::size_t>(fine.rows), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::uint32_t* from = coarse.crossings + row / 2 * static_cast<std::size_t>(coarse.columns) * OpacityMap::kLayers;
+      std::uint32_t* to = fine.crossings + row * static_cast<std::size_t>(fine.columns) * OpacityMap::kLayers;
+      for (std::size_t column = 0; column < static_cast<std::size_t>(fine.columns); ++column)
+        for (std::size_t i = 0; i < OpacityMap::kLayers; ++i)
+          to[column * OpacityMap::kLayers + i] += from[column / 2 * OpacityMap::kLayers + i];
+    }
+  });
+}
+
+Drawing begin_drawing(const CameraView& view, const Bounds& box, float widest, std::size_t strand_stride) {
   Drawing d;
   d.map.view = view;
   place_layers(box, d.map);
   const std::size_t columns = origin_columns(view);
   const std::size_t rows = static_cast<std::size_t>((view.height + OpacityMap::kOriginBlock - 1) / OpacityMap::kOriginBlock);
   d.depth_bits.resize(columns * rows);
-  d.map.crossings.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * OpacityMap::kLayers);
   fill_parallel(d.depth_bits.data(), d.depth_bits.size(), std::bit_cast<std::uint32_t>(INFINITY));
-  fill_parallel(d.map.crossings.data(), d.map.crossings.size(), 0);
+  begin_levels(widest, d);
   d.target.view = view, d.target.layer_end = d.map.layer_end;
-  d.target.origin_columns = static_cast<std::int32_t>(columns);
-  d.target.first_depth = d.depth_bits.data(), d.target.crossings = d.map.crossings.data();
+  d.target.origin_columns = static_cast<std::int32_t>(columns), d.target.origin_rows = static_cast<std::int32_t>(rows);
+  d.target.first_depth = d.depth_bits.data();
   d.target.units = static_cast<float>(strand_stride) / OpacityMap::kCrossingUnit;
   return d;
 }
 
 OpacityMap end_drawing(Drawing d) {
+  for (auto k = static_cast<std::size_t>(d.target.level_count) - 1; k > 0; --k)
+    add_coarser(d.target.levels[k], d.target.levels[k - 1]);
   accumulate_layers(d.map);
   d.map.first_depth.resize(d.depth_bits.size());
   for (std::size_t i = 0; i < d.depth_bits.size(); ++i) d.map.first_depth[i] = std::bit_cast<float>(d.depth_bits[i]);
@@ -122,7 +168,8 @@ std::vector<OpacityMap> build_opacity_maps(const std::vector<StrandLines>& groom
   const Bounds box = bounds(grooms);
   if (box.empty()) return std::vector<OpacityMap>(views.size());
   std::vector<Drawing> drawings;
-  for (const CameraView& view : views) drawings.push_back(begin_drawing(view, box, settings.strand_stride));
+  for (const CameraView& view : views)
+    drawings.push_back(begin_drawing(view, box, widest_band(grooms, view), settings.strand_stride));
   std::vector<Picked> picked;
   for (const StrandLines& lines : grooms)
     if (!views.empty() && !lines.bounds().empty())

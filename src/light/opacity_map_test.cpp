@@ -117,7 +117,7 @@ TEST(OpacityMap, MeanCrossingsEqualCountingRays) {
   constexpr float kWidth = 0.02f;
   for (const Vec3 direction : {Vec3(0, 0, -1), Vec3(1, -2, 0.5f)}) {
     const Light light = directional(direction);
-    for (const int size : {32, 256}) {  // strands thinner and wider than a texel
+    for (const int size : {32, 256, 2048}) {  // strands thinner than a texel, wider, and so wide that they are drawn coarser
       const OpacityMap map = map_of(groom_of(lines, kWidth), light, size);
       double drawn = 0, counted = 0;
       for (int i = 0; i < 4000; ++i) {
@@ -129,6 +129,27 @@ TEST(OpacityMap, MeanCrossingsEqualCountingRays) {
       EXPECT_NEAR(drawn / counted, 1, 0.03) << size;
     }
   }
+}
+
+// Bands of ten texels are drawn coarser, yet where they are: place by place, not only in the mean.
+TEST(OpacityMap, WideBandsLieWhereRaysMeetThem) {
+  const std::vector<Straight> lines = thicket(100);
+  constexpr float kWidth = 0.04f;
+  const Light light = directional({1, -2, 0.5f});
+  const OpacityMap map = map_of(groom_of(lines, kWidth), light, 1024);
+  ASSERT_GT(kWidth / texel_size(map.view, 1), 9);
+  double error2 = 0, counts = 0, counts2 = 0;
+  constexpr int kPlaces = 4000;
+  for (int i = 0; i < kPlaces; ++i) {
+    Rng rng(5, static_cast<std::uint32_t>(i));
+    const Vec3 p{1.2f * rng.uniform() - 0.6f, 1.2f * rng.uniform() - 0.6f, 1.2f * rng.uniform() - 0.6f};
+    double counted = 0;
+    for (const Straight& line : lines) counted += meets(line.from, line.to, p, light.direction, kWidth / 2);
+    const double error = static_cast<double>(crossings_at(map, p + light.direction * 10.f)) - counted;
+    error2 += error * error, counts += counted, counts2 += counted * counted;
+  }
+  const double variance = counts2 / kPlaces - counts * counts / kPlaces / kPlaces;
+  EXPECT_LT(error2 / kPlaces, 0.3 * variance);
 }
 
 TEST(OpacityMap, CrossingsGrowWithDepth) {

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <bit>
+#include <cmath>
 
 #include "kernel/wide-inl.h"
 #include "kernel/lanes-inl.h"
@@ -74,41 +75,55 @@ HWY_INLINE int largest(Mask m, Float v) {
 }
 HWY_INLINE Float ceiling(Float v) { return -floor(-v); }
 
-/// Calls body(active, column, row, depth, crossings) for pieces of at most `step` texels; crossings summed over rays, a texel has 1.
+/// The same segments on a map of `scale` as many texels a side.
+HWY_INLINE Segments scaled(const Segments& s, float scale) {
+  const Float f(scale);
+  return {s.x * f, s.y * f, s.z, s.dx * f, s.dy * f, s.dz, s.band * f, s.density, s.valid};
+}
+
+/// Calls body(active, column, row, depth, crossings) for pieces of at most `step` texels on a map of w × h; crossings summed over
+/// rays, a texel has 1.
 template <class Body>
-HWY_INLINE void for_each_piece(const CameraView& view, const LineBlock& lines, float step, const Body& body) {
-  const float w = static_cast<float>(view.width), h = static_cast<float>(view.height);
+HWY_INLINE void for_each_piece(const Segments& s, float w, float h, float step, const Body& body) {
   const Float per_step(1 / step);
-  for (std::size_t j = 0; j < lines.count; j += static_cast<std::size_t>(lanes())) {
-    const Segments s = segments_at(view, lines, j);
-    if (!any(s.valid)) continue;
-    const Float reach = sqrt(s.dx * s.dx + s.dy * s.dy);
-    const Float parallel = v_clamp(ceiling(s.band * per_step), Float(1.0f), Float(std::max(w, h)));
-    const int most_parallel = largest(s.valid, parallel);
-    for (int line = 0; line < most_parallel; ++line) {
-      const Float side =
-          s.band * ((Float(static_cast<float>(line) + 0.5f)) / parallel - Float(0.5f)) / max(reach, Float(1.0e-20f));
-      const Float x = s.x - s.dy * side, y = s.y + s.dx * side;
-      Float t0(0.0f), t1(1.0f);
-      clip_axis(x, s.dx, w, t0, t1), clip_axis(y, s.dy, h, t0, t1);
-      const Mask drawn = s.valid && (t0 < t1) && (Float(static_cast<float>(line)) < parallel);
-      const Float span = t1 - t0;
-      const Float pieces = max(ceiling(max(abs(s.dx), abs(s.dy)) * span * per_step), Float(1.0f));
-      const Float stride = span / pieces, area = reach * stride * s.band * s.density / parallel;
-      const int most_pieces = largest(drawn, pieces);
-      for (int i = 0; i < most_pieces; ++i) {
-        const Mask active = drawn && (Float(static_cast<float>(i)) < pieces);
-        const Float t = t0 + stride * Float(static_cast<float>(i) + 0.5f);
-        body(active, v_clamp(floor(x + t * s.dx), Float(0.0f), Float(w - 1)),
-             v_clamp(floor(y + t * s.dy), Float(0.0f), Float(h - 1)), s.z + t * s.dz, area);
-      }
+  const Float last_column(std::ceil(w) - 1), last_row(std::ceil(h) - 1);
+  const Float reach = sqrt(s.dx * s.dx + s.dy * s.dy);
+  const Float parallel = v_clamp(ceiling(s.band * per_step), Float(1.0f), Float(std::max(1.f, std::max(w, h))));
+  const int most_parallel = largest(s.valid, parallel);
+  for (int line = 0; line < most_parallel; ++line) {
+    const Float side =
+        s.band * ((Float(static_cast<float>(line) + 0.5f)) / parallel - Float(0.5f)) / max(reach, Float(1.0e-20f));
+    const Float x = s.x - s.dy * side, y = s.y + s.dx * side;
+    Float t0(0.0f), t1(1.0f);
+    clip_axis(x, s.dx, w, t0, t1), clip_axis(y, s.dy, h, t0, t1);
+    const Mask drawn = s.valid && (t0 < t1) && (Float(static_cast<float>(line)) < parallel);
+    const Float span = t1 - t0;
+    const Float pieces = max(ceiling(max(abs(s.dx), abs(s.dy)) * span * per_step), Float(1.0f));
+    const Float stride = span / pieces, area = reach * stride * s.band * s.density / parallel;
+    const int most_pieces = largest(drawn, pieces);
+    for (int i = 0; i < most_pieces; ++i) {
+      const Mask active = drawn && (Float(static_cast<float>(i)) < pieces);
+      const Float t = t0 + stride * Float(static_cast<float>(i) + 0.5f);
+      body(active, v_clamp(floor(x + t * s.dx), Float(0.0f), last_column), v_clamp(floor(y + t * s.dy), Float(0.0f), last_row),
+           s.z + t * s.dz, area);
     }
   }
 }
 
-HWY_INLINE Int origin_index(const SplatTarget& target, Float column, Float row) {
+/// Those segments that are drawn into level k.
+HWY_INLINE Mask in_level(const SplatTarget& target, const Segments& s, int k) {
+  Mask in = s.valid;
+  if (k > 0) in = in && (s.band * Float(target.levels[static_cast<std::size_t>(k)].scale) >= Float(kBandTexels));
+  if (k + 1 < target.level_count)
+    in = in && (s.band * Float(target.levels[static_cast<std::size_t>(k) + 1].scale) < Float(kBandTexels));
+  return in;
+}
+
+/// Of the texel whose center is at (x, y) of level 0.
+HWY_INLINE Int origin_index(const SplatTarget& target, Float x, Float y) {
   const Float per_block(1.f / OpacityMap::kOriginBlock);
-  return to_int(floor(row * per_block)) * Int(target.origin_columns) + to_int(floor(column * per_block));
+  const Float last(static_cast<float>(target.origin_columns - 1)), last_row(static_cast<float>(target.origin_rows - 1));
+  return to_int(min(floor(y * per_block), last_row)) * Int(target.origin_columns) + to_int(min(floor(x * per_block), last));
 }
 
 /// Bits of the lanes that are set, lane 0 lowest.
@@ -132,7 +147,7 @@ void SplatDepths(const LineBlock& lines, const SplatTarget& target) {
   using namespace wide;
   alignas(64) std::int32_t index[kMaxLanes];
   alignas(64) float depth[kMaxLanes];
-  for_each_piece(target.view, lines, OpacityMap::kOriginBlock, [&](Mask active, Float column, Float row, Float z, Float) {
+  const auto lower = [&](Mask active, Float column, Float row, Float z, Float) {
     const Int at = origin_index(target, column, row);
     const Float seen(hn::BitCast(FloatTag(), gather_shared(target.first_depth, at).v));
     std::uint64_t bits = lane_bits(active && (z < seen));
@@ -142,28 +157,45 @@ void SplatDepths(const LineBlock& lines, const SplatTarget& target) {
       const int lane = std::countr_zero(bits);
       lower_to(target.first_depth[index[lane]], std::bit_cast<std::uint32_t>(depth[lane]));
     }
-  });
+  };
+  for (std::size_t j = 0; j < lines.count; j += static_cast<std::size_t>(lanes())) {
+    const Segments s = segments_at(target.view, lines, j);
+    if (any(s.valid)) for_each_piece(s, target.levels[0].width, target.levels[0].height, OpacityMap::kOriginBlock, lower);
+  }
 }
 
 void SplatCrossings(const LineBlock& lines, const SplatTarget& target) {
   using namespace wide;
   alignas(64) std::int32_t index[kMaxLanes], amount[kMaxLanes];
   const Float units(target.units);
-  for_each_piece(target.view, lines, 1, [&](Mask active, Float column, Float row, Float z, Float area) {
-    const Float first(hn::BitCast(FloatTag(), gather(target.first_depth, origin_index(target, column, row)).v));
-    const Float d = z - first;
-    Float layer(0.0f);
-    for (std::size_t i = 0; i + 1 < OpacityMap::kLayers; ++i)
-      layer = layer + select(d > Float(target.layer_end[i]), Float(1.0f), Float(0.0f));
-    const Int texel = to_int(row) * Int(target.view.width) + to_int(column);
-    store(texel * Int(OpacityMap::kLayers) + to_int(layer), index);
-    store(to_int(area * units + Float(0.5f)), amount);
-    for (std::uint64_t bits = lane_bits(active); bits != 0; bits &= bits - 1) {
-      const int lane = std::countr_zero(bits);
-      std::atomic_ref(target.crossings[index[lane]])
-          .fetch_add(static_cast<std::uint32_t>(amount[lane]), std::memory_order_relaxed);
+  const auto add_to = [&](const SplatLevel& level) {
+    const Float texels(1 / level.scale);
+    return [&, texels](Mask active, Float column, Float row, Float z, Float area) {
+      const Float half(0.5f);
+      const Int origin = origin_index(target, (column + half) * texels, (row + half) * texels);
+      const Float d = z - Float(hn::BitCast(FloatTag(), gather(target.first_depth, origin).v));
+      Float layer(0.0f);
+      for (std::size_t i = 0; i + 1 < OpacityMap::kLayers; ++i)
+        layer = layer + select(d > Float(target.layer_end[i]), Float(1.0f), Float(0.0f));
+      const Int texel = to_int(row) * Int(level.columns) + to_int(column);
+      store(texel * Int(OpacityMap::kLayers) + to_int(layer), index);
+      store(to_int(area * units + half), amount);
+      for (std::uint64_t bits = lane_bits(active); bits != 0; bits &= bits - 1) {
+        const int lane = std::countr_zero(bits);
+        std::atomic_ref(level.crossings[index[lane]])
+            .fetch_add(static_cast<std::uint32_t>(amount[lane]), std::memory_order_relaxed);
+      }
+    };
+  };
+  for (std::size_t j = 0; j < lines.count; j += static_cast<std::size_t>(lanes())) {
+    const Segments s = segments_at(target.view, lines, j);
+    for (int k = 0; k < target.level_count; ++k) {
+      const SplatLevel& level = target.levels[static_cast<std::size_t>(k)];
+      Segments here = scaled(s, level.scale);
+      here.valid = in_level(target, s, k);
+      if (any(here.valid)) for_each_piece(here, level.width, level.height, 1, add_to(level));
     }
-  });
+  }
 }
 
 }  // namespace HWY_NAMESPACE

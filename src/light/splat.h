@@ -20,22 +20,36 @@ struct LineBlock {
   Buffer<float> density;  ///< hairs that a ray through the band meets on average: 1 of a strand
 };
 
+/// A map of every 2^k × 2^k texels as one, for bands that are many texels wide. Level 0 is the map itself.
+struct SplatLevel {
+  float scale = 1;              ///< 2^−k
+  float width = 0, height = 0;  ///< of the map, in texels of this level
+  std::int32_t columns = 0, rows = 0;
+  std::uint32_t* crossings = nullptr;  ///< per texel and layer (not yet summed over layers), raised by splat_crossings
+};
+
 /// The map that is drawn into; the memory is shared by all threads.
 struct SplatTarget {
+  static constexpr int kMaxLevels = 6;
   CameraView view;
-  std::int32_t origin_columns = 0;
+  std::int32_t origin_columns = 0, origin_rows = 0;
   std::uint32_t* first_depth = nullptr;  ///< IEEE bits of positive floats, lowered by splat_depths
-  std::uint32_t* crossings = nullptr;    ///< per texel and layer (not yet summed over layers), raised by splat_crossings
+  std::array<SplatLevel, kMaxLevels> levels;
+  int level_count = 1;
   std::array<float, OpacityMap::kLayers> layer_end{};
   float units = 1;  ///< of OpacityMap::kCrossingUnit per crossing, times the strands that each stands for
 };
+
+/// A band is drawn into level k + 1 from this many of its texels on: it is smeared by half its width at most.
+inline constexpr float kBandTexels = 2;
 
 /// Lowers first_depth to the depth of every segment that a block of texels sees. Segments that reach behind the near plane
 /// are left out, here and below. Thread-safe on one target; atomic minima do not depend on the order.
 void splat_depths(const LineBlock& lines, const SplatTarget& target);
 
 /// Adds the expected crossings of each segment to the texels and layers that it passes: what its pieces, no longer than
-/// a texel, cover of a texel. A band wider than a texel is drawn as parallel lines. Integer sums: any order, same bits.
+/// a texel, cover of a texel. A band wider than a texel is drawn as parallel lines, into the coarsest level of which it is still
+/// kBandTexels wide. Integer sums: any order, same bits.
 void splat_crossings(const LineBlock& lines, const SplatTarget& target);
 
 }  // namespace pelage

@@ -98,7 +98,8 @@ StrandLines::StrandLines(const GroomInstance& groom)
   bounds_ = extent.box;
   if (bounds_.empty()) return;
   constexpr float kOvershoot = 0.125f;  // negative weights of Catmull-Rom curves sum to that at most
-  const float half = 0.5f * width_scale_ * extent.widest;
+  widest_band_ = width_scale_ * extent.widest;
+  const float half = 0.5f * widest_band_;
   const Vec3 beyond = bounds_.extent() * kOvershoot + Vec3(half, half, half);
   reach_ = {bounds_.lower - beyond, bounds_.upper + beyond};
 }

@@ -18,9 +18,10 @@ class StrandLines {
   explicit StrandLines(const GroomInstance& groom);
 
   std::size_t part_count() const { return drawn_parts(*groom_); }
-  const Bounds& bounds() const { return bounds_; }  ///< of the control points that are drawn, world space
-  const Bounds& reach() const { return reach_; }    ///< of the curves and their widths, world space
-  float mean_span() const { return mean_span_; }    ///< metres, over at most a thousand strands
+  const Bounds& bounds() const { return bounds_; }    ///< of the control points that are drawn, world space
+  const Bounds& reach() const { return reach_; }      ///< of the curves and their widths, world space
+  float widest_band() const { return widest_band_; }  ///< metres, what a light sees at most
+  float mean_span() const { return mean_span_; }      ///< metres, over at most a thousand strands
 
   /// One strand, or part of one, of each `stride` neighbors, picked by a random number of its own; all for stride 1, in the order that
   /// suits `view`.
@@ -42,7 +43,7 @@ class StrandLines {
   const GroomInstance* groom_;
   std::vector<Band> bands_;  // [points] of thick hairs; else empty
   float width_scale_;
-  float mean_span_ = 0;
+  float mean_span_ = 0, widest_band_ = 0;
   Bounds bounds_, reach_;
 };
 
