@@ -145,7 +145,7 @@ Drawing begin_drawing(const CameraView& view, const Bounds& box, float widest, s
   fill_parallel(d.depth_bits.data(), d.depth_bits.size(), std::bit_cast<std::uint32_t>(INFINITY));
   begin_levels(widest, d);
   d.target.view = view, d.target.layer_end = d.map.layer_end;
-  d.target.origin_columns = static_cast<std::int32_t>(columns), d.target.origin_rows = static_cast<std::int32_t>(rows);
+  d.target.origin_columns = static_cast<std::int32_t>(columns);
   d.target.first_depth = d.depth_bits.data();
   d.target.units = static_cast<float>(strand_stride) / OpacityMap::kCrossingUnit;
   return d;

@@ -149,7 +149,7 @@ TEST(OpacityMap, WideBandsLieWhereRaysMeetThem) {
     error2 += error * error, counts += counted, counts2 += counted * counted;
   }
   const double variance = counts2 / kPlaces - counts * counts / kPlaces / kPlaces;
-  EXPECT_LT(error2 / kPlaces, 0.3 * variance);
+  EXPECT_LT(error2 / kPlaces, 0.2 * variance);
 }
 
 TEST(OpacityMap, CrossingsGrowWithDepth) {

@@ -75,6 +75,15 @@ HWY_INLINE int largest(Mask m, Float v) {
 }
 HWY_INLINE Float ceiling(Float v) { return -floor(-v); }
 
+/// Calls body(segments) for all that the map can see, a segment per lane.
+template <class Body>
+HWY_INLINE void for_each_segments(const CameraView& view, const LineBlock& lines, const Body& body) {
+  for (std::size_t j = 0; j < lines.count; j += static_cast<std::size_t>(lanes())) {
+    const Segments s = segments_at(view, lines, j);
+    if (any(s.valid)) body(s);
+  }
+}
+
 /// The same segments on a map of `scale` as many texels a side.
 HWY_INLINE Segments scaled(const Segments& s, float scale) {
   const Float f(scale);
@@ -119,11 +128,10 @@ HWY_INLINE Mask in_level(const SplatTarget& target, const Segments& s, int k) {
   return in;
 }
 
-/// Of the texel whose center is at (x, y) of level 0.
+/// Of the texel that begins at (x, y) of level 0, in whole texels.
 HWY_INLINE Int origin_index(const SplatTarget& target, Float x, Float y) {
   const Float per_block(1.f / OpacityMap::kOriginBlock);
-  const Float last(static_cast<float>(target.origin_columns - 1)), last_row(static_cast<float>(target.origin_rows - 1));
-  return to_int(min(floor(y * per_block), last_row)) * Int(target.origin_columns) + to_int(min(floor(x * per_block), last));
+  return to_int(floor(y * per_block)) * Int(target.origin_columns) + to_int(floor(x * per_block));
 }
 
 /// Bits of the lanes that are set, lane 0 lowest.
@@ -140,62 +148,64 @@ void lower_to(std::uint32_t& value, std::uint32_t bits) {
   }
 }
 
+HWY_INLINE void lower_depths(const SplatTarget& target, Mask active, Float column, Float row, Float z) {
+  const Int at = origin_index(target, column, row);
+  const Float seen(hn::BitCast(FloatTag(), gather_shared(target.first_depth, at).v));
+  std::uint64_t bits = lane_bits(active && (z < seen));
+  if (bits == 0) return;
+  alignas(64) std::int32_t index[kMaxLanes];
+  alignas(64) float depth[kMaxLanes];
+  store(at, index), store(z, depth);
+  for (; bits != 0; bits &= bits - 1) {
+    const int lane = std::countr_zero(bits);
+    lower_to(target.first_depth[index[lane]], std::bit_cast<std::uint32_t>(depth[lane]));
+  }
+}
+
+HWY_INLINE void add_crossings(const SplatTarget& target, const SplatLevel& level, Mask active, Float column, Float row, Float z,
+                              Float area) {
+  const Float texels(1 / level.scale);
+  const Int origin = origin_index(target, column * texels, row * texels);
+  const Float d = z - Float(hn::BitCast(FloatTag(), gather(target.first_depth, origin).v));
+  Float layer(0.0f);
+  for (std::size_t i = 0; i + 1 < OpacityMap::kLayers; ++i)
+    layer = layer + select(d > Float(target.layer_end[i]), Float(1.0f), Float(0.0f));
+  const Int texel = to_int(row) * Int(level.columns) + to_int(column);
+  alignas(64) std::int32_t index[kMaxLanes], amount[kMaxLanes];
+  store(texel * Int(OpacityMap::kLayers) + to_int(layer), index);
+  store(to_int(area * Float(target.units) + Float(0.5f)), amount);
+  for (std::uint64_t bits = lane_bits(active); bits != 0; bits &= bits - 1) {
+    const int lane = std::countr_zero(bits);
+    std::atomic_ref(level.crossings[index[lane]])
+        .fetch_add(static_cast<std::uint32_t>(amount[lane]), std::memory_order_relaxed);
+  }
+}
+
 }  // namespace
 }  // namespace wide
 
 void SplatDepths(const LineBlock& lines, const SplatTarget& target) {
   using namespace wide;
-  alignas(64) std::int32_t index[kMaxLanes];
-  alignas(64) float depth[kMaxLanes];
-  const auto lower = [&](Mask active, Float column, Float row, Float z, Float) {
-    const Int at = origin_index(target, column, row);
-    const Float seen(hn::BitCast(FloatTag(), gather_shared(target.first_depth, at).v));
-    std::uint64_t bits = lane_bits(active && (z < seen));
-    if (bits == 0) return;
-    store(at, index), store(z, depth);
-    for (; bits != 0; bits &= bits - 1) {
-      const int lane = std::countr_zero(bits);
-      lower_to(target.first_depth[index[lane]], std::bit_cast<std::uint32_t>(depth[lane]));
-    }
-  };
-  for (std::size_t j = 0; j < lines.count; j += static_cast<std::size_t>(lanes())) {
-    const Segments s = segments_at(target.view, lines, j);
-    if (any(s.valid)) for_each_piece(s, target.levels[0].width, target.levels[0].height, OpacityMap::kOriginBlock, lower);
-  }
+  const SplatLevel& map = target.levels[0];
+  for_each_segments(target.view, lines, [&](const Segments& s) {
+    for_each_piece(s, map.width, map.height, OpacityMap::kOriginBlock,
+                   [&](Mask active, Float column, Float row, Float z, Float) { lower_depths(target, active, column, row, z); });
+  });
 }
 
 void SplatCrossings(const LineBlock& lines, const SplatTarget& target) {
   using namespace wide;
-  alignas(64) std::int32_t index[kMaxLanes], amount[kMaxLanes];
-  const Float units(target.units);
-  const auto add_to = [&](const SplatLevel& level) {
-    const Float texels(1 / level.scale);
-    return [&, texels](Mask active, Float column, Float row, Float z, Float area) {
-      const Float half(0.5f);
-      const Int origin = origin_index(target, (column + half) * texels, (row + half) * texels);
-      const Float d = z - Float(hn::BitCast(FloatTag(), gather(target.first_depth, origin).v));
-      Float layer(0.0f);
-      for (std::size_t i = 0; i + 1 < OpacityMap::kLayers; ++i)
-        layer = layer + select(d > Float(target.layer_end[i]), Float(1.0f), Float(0.0f));
-      const Int texel = to_int(row) * Int(level.columns) + to_int(column);
-      store(texel * Int(OpacityMap::kLayers) + to_int(layer), index);
-      store(to_int(area * units + half), amount);
-      for (std::uint64_t bits = lane_bits(active); bits != 0; bits &= bits - 1) {
-        const int lane = std::countr_zero(bits);
-        std::atomic_ref(level.crossings[index[lane]])
-            .fetch_add(static_cast<std::uint32_t>(amount[lane]), std::memory_order_relaxed);
-      }
-    };
-  };
-  for (std::size_t j = 0; j < lines.count; j += static_cast<std::size_t>(lanes())) {
-    const Segments s = segments_at(target.view, lines, j);
+  for_each_segments(target.view, lines, [&](const Segments& s) {
     for (int k = 0; k < target.level_count; ++k) {
       const SplatLevel& level = target.levels[static_cast<std::size_t>(k)];
       Segments here = scaled(s, level.scale);
       here.valid = in_level(target, s, k);
-      if (any(here.valid)) for_each_piece(here, level.width, level.height, 1, add_to(level));
+      if (!any(here.valid)) continue;
+      for_each_piece(here, level.width, level.height, 1, [&](Mask active, Float column, Float row, Float z, Float area) {
+        add_crossings(target, level, active, column, row, z, area);
+      });
     }
-  }
+  });
 }
 
 }  // namespace HWY_NAMESPACE

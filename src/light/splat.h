@@ -30,9 +30,11 @@ struct SplatLevel {
 
 /// The map that is drawn into; the memory is shared by all threads.
 struct SplatTarget {
-  static constexpr int kMaxLevels = 6;
+  /// The coarsest has texels as large as OpacityMap::kOriginBlock: each of its texels has one first depth, so layers stay what they are.
+  static constexpr int kMaxLevels = 3;
+  static_assert(1 << (kMaxLevels - 1) == OpacityMap::kOriginBlock);
   CameraView view;
-  std::int32_t origin_columns = 0, origin_rows = 0;
+  std::int32_t origin_columns = 0;
   std::uint32_t* first_depth = nullptr;  ///< IEEE bits of positive floats, lowered by splat_depths
   std::array<SplatLevel, kMaxLevels> levels;
   int level_count = 1;
@@ -40,16 +42,16 @@ struct SplatTarget {
   float units = 1;  ///< of OpacityMap::kCrossingUnit per crossing, times the strands that each stands for
 };
 
-/// A band is drawn into level k + 1 from this many of its texels on: it is smeared by half its width at most.
-inline constexpr float kBandTexels = 2;
+/// A band is drawn into level k + 1, where there is one, from this many of its texels on: it is smeared by half its width at most.
+inline constexpr float kBandTexels = 4;
 
 /// Lowers first_depth to the depth of every segment that a block of texels sees. Segments that reach behind the near plane
 /// are left out, here and below. Thread-safe on one target; atomic minima do not depend on the order.
 void splat_depths(const LineBlock& lines, const SplatTarget& target);
 
 /// Adds the expected crossings of each segment to the texels and layers that it passes: what its pieces, no longer than
-/// a texel, cover of a texel. A band wider than a texel is drawn as parallel lines, into the coarsest level of which it is still
-/// kBandTexels wide. Integer sums: any order, same bits.
+/// a texel, cover of a texel. A band wider than a texel is drawn as parallel lines, into the coarsest level in which it is
+/// still kBandTexels wide. Integer sums: any order, same bits.
 void splat_crossings(const LineBlock& lines, const SplatTarget& target);
 
 }  // namespace pelage

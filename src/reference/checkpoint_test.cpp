@@ -7,16 +7,14 @@
 
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "core/rng.h"
 
 namespace pelage {
 namespace {
-
-std::string path_of(const char* name) { return testing::TempDir() + "pelage_" + std::to_string(getpid()) + "_" + name; }
 
 Film some_film(int samples) {
   Film film(20, 10, true, false);
@@ -47,8 +45,10 @@ std::string message_of(const std::string& path, std::uint64_t mark, Film film) {
 
 class Checkpoint : public testing::Test {
  protected:
-  ~Checkpoint() override { std::remove(path_.c_str()); }
-  std::string path_ = path_of("state");
+  Checkpoint() { std::filesystem::create_directories(folder_); }
+  ~Checkpoint() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_ = testing::TempDir() + "pelage_checkpoint_" + std::to_string(getpid());
+  std::string path_ = folder_ / "state";
 };
 
 TEST_F(Checkpoint, GivesBackWhatWasWritten) {
