@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "frame/light_lookup.h"
 #include "light/light_view.h"
+#include "light/sheets.h"
 
 namespace pelage {
 namespace {
@@ -16,6 +17,8 @@ namespace {
 constexpr std::size_t kStrandsPerTask = 256;
 /// Spans longer than this many texels are split, so that maps see curves as curves.
 constexpr float kTexelsPerSegment = 8;
+/// Threads have sheets of their own up to this many bytes in all.
+constexpr std::size_t kMaxSheetBytes = std::size_t{256} << 20;
 /// Crossings beyond this (262,144 strands) saturate: signed conversion is what every instruction set has.
 constexpr std::uint32_t kMaxUnits = 0x7fffffff;
 
@@ -62,10 +65,6 @@ void place_layers(const Bounds& box, OpacityMap& map) {
     map.layer_end[i] = std::ldexp(range, static_cast<int>(i) + 1 - OpacityMap::kLayers);
 }
 
-void fill_parallel(std::uint32_t* values, std::size_t count, std::uint32_t value) {
-  parallel_for(count, 1 << 16, [&](std::size_t begin, std::size_t end) { std::fill(values + begin, values + end, value); });
-}
-
 /// From strands inside each layer to strands up to its end.
 void accumulate_layers(OpacityMap& map) {
   parallel_for(map.crossings.size() / OpacityMap::kLayers, 1 << 14, [&](std::size_t begin, std::size_t end) {
@@ -87,9 +86,20 @@ void accumulate_layers(OpacityMap& map) {
 struct Drawing {
   OpacityMap map;
   Buffer<std::uint32_t> depth_bits;
-  std::array<Buffer<std::uint32_t>, SplatTarget::kMaxLevels> coarser;  // levels from 1 on
-  SplatTarget target;
+  SplatTarget target;  // but for its levels' crossings, which are …
+  std::vector<Sheets> sheets;
+
+  /// What the calling thread draws into.
+  SplatTarget mine() {
+    SplatTarget t = target;
+    for (std::size_t k = 0; k < sheets.size(); ++k) t.levels[k].crossings = sheets[k].mine();
+    return t;
+  }
 };
+
+std::size_t texels(const SplatLevel& level) {
+  return static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows);
+}
 
 /// Texels of the widest band of all.
 float widest_band(const std::vector<StrandLines>& grooms, const CameraView& view) {
@@ -115,19 +125,17 @@ void begin_levels(float widest, Drawing& d) {
     level.scale = scale, level.width = width * scale, level.height = height * scale;
     level.columns = static_cast<std::int32_t>(std::ceil(level.width)),
     level.rows = static_cast<std::int32_t>(std::ceil(level.height));
-    Buffer<std::uint32_t>& texels = k == 0 ? d.map.crossings : d.coarser[k];
-    texels.resize(static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows) * OpacityMap::kLayers);
-    fill_parallel(texels.data(), texels.size(), 0);
-    level.crossings = texels.data();
+    d.sheets.emplace_back(texels(level) * OpacityMap::kLayers, !target.shared);
   }
 }
 
 /// What level k + 1 has is what each of its four texels of level k has: expectations know no area.
-void add_coarser(const SplatLevel& coarse, const SplatLevel& fine) {
+void add_coarser(const SplatLevel& coarse, const std::uint32_t* coarse_crossings, const SplatLevel& fine,
+                 std::uint32_t* crossings) {
   parallel_for(static_cast<std::size_t>(fine.rows), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
-      const std::uint32_t* from = coarse.crossings + row / 2 * static_cast<std::size_t>(coarse.columns) * OpacityMap::kLayers;
-      std::uint32_t* to = fine.crossings + row * static_cast<std::size_t>(fine.columns) * OpacityMap::kLayers;
+      const std::uint32_t* from = coarse_crossings + row / 2 * static_cast<std::size_t>(coarse.columns) * OpacityMap::kLayers;
+      std::uint32_t* to = crossings + row * static_cast<std::size_t>(fine.columns) * OpacityMap::kLayers;
       for (std::size_t column = 0; column < static_cast<std::size_t>(fine.columns); ++column)
         for (std::size_t i = 0; i < OpacityMap::kLayers; ++i)
           to[column * OpacityMap::kLayers + i] += from[column / 2 * OpacityMap::kLayers + i];
@@ -135,7 +143,7 @@ void add_coarser(const SplatLevel& coarse, const SplatLevel& fine) {
   });
 }
 
-Drawing begin_drawing(const CameraView& view, const Bounds& box, float widest, std::size_t strand_stride) {
+Drawing begin_drawing(const CameraView& view, const Bounds& box, float widest, std::size_t strand_stride, bool shared) {
   Drawing d;
   d.map.view = view;
   place_layers(box, d.map);
@@ -143,6 +151,7 @@ Drawing begin_drawing(const CameraView& view, const Bounds& box, float widest, s
   const std::size_t rows = static_cast<std::size_t>((view.height + OpacityMap::kOriginBlock - 1) / OpacityMap::kOriginBlock);
   d.depth_bits.resize(columns * rows);
   fill_parallel(d.depth_bits.data(), d.depth_bits.size(), std::bit_cast<std::uint32_t>(INFINITY));
+  d.target.shared = shared;
   begin_levels(widest, d);
   d.target.view = view, d.target.layer_end = d.map.layer_end;
   d.target.origin_columns = static_cast<std::int32_t>(columns);
@@ -152,12 +161,25 @@ Drawing begin_drawing(const CameraView& view, const Bounds& box, float widest, s
 }
 
 OpacityMap end_drawing(Drawing d) {
-  for (auto k = static_cast<std::size_t>(d.target.level_count) - 1; k > 0; --k)
-    add_coarser(d.target.levels[k], d.target.levels[k - 1]);
+  auto k = static_cast<std::size_t>(d.target.level_count) - 1;
+  for (d.map.crossings = d.sheets[k].sum(); k > 0; --k) {
+    Buffer<std::uint32_t> finer = d.sheets[k - 1].sum();
+    add_coarser(d.target.levels[k], d.map.crossings.data(), d.target.levels[k - 1], finer.data());
+    d.map.crossings.swap(finer);
+  }
   accumulate_layers(d.map);
   d.map.first_depth.resize(d.depth_bits.size());
   for (std::size_t i = 0; i < d.depth_bits.size(); ++i) d.map.first_depth[i] = std::bit_cast<float>(d.depth_bits[i]);
   return std::move(d.map);
+}
+
+/// Whether sheets of all threads would take too much memory.
+bool share_sheets(std::span<const CameraView> views) {
+  std::size_t bytes = 0;
+  for (const CameraView& view : views)
+    bytes += sizeof(std::uint32_t) * OpacityMap::kLayers * static_cast<std::size_t>(view.width) *
+             static_cast<std::size_t>(view.height);
+  return bytes * static_cast<std::size_t>(arena().max_concurrency()) > kMaxSheetBytes;
 }
 
 }  // namespace
@@ -167,9 +189,10 @@ std::vector<OpacityMap> build_opacity_maps(const std::vector<StrandLines>& groom
   PELAGE_CHECK(settings.strand_stride >= 1);
   const Bounds box = bounds(grooms);
   if (box.empty()) return std::vector<OpacityMap>(views.size());
+  const bool shared = share_sheets(views);
   std::vector<Drawing> drawings;
   for (const CameraView& view : views)
-    drawings.push_back(begin_drawing(view, box, widest_band(grooms, view), settings.strand_stride));
+    drawings.push_back(begin_drawing(view, box, widest_band(grooms, view), settings.strand_stride, shared));
   std::vector<Picked> picked;
   for (const StrandLines& lines : grooms)
     if (!views.empty() && !lines.bounds().empty())
@@ -179,7 +202,7 @@ std::vector<OpacityMap> build_opacity_maps(const std::vector<StrandLines>& groom
     for (const Drawing& d : drawings) splat_depths(block, d.target);
   });
   for_each_block(picked, [&](const LineBlock& block) {
-    for (const Drawing& d : drawings) splat_crossings(block, d.target);
+    for (Drawing& d : drawings) splat_crossings(block, d.mine());
   });
   std::vector<OpacityMap> maps;
   for (Drawing& d : drawings) maps.push_back(end_drawing(std::move(d)));

@@ -174,11 +174,15 @@ HWY_INLINE void add_crossings(const SplatTarget& target, const SplatLevel& level
   alignas(64) std::int32_t index[kMaxLanes], amount[kMaxLanes];
   store(texel * Int(OpacityMap::kLayers) + to_int(layer), index);
   store(to_int(area * Float(target.units) + Float(0.5f)), amount);
-  for (std::uint64_t bits = lane_bits(active); bits != 0; bits &= bits - 1) {
-    const int lane = std::countr_zero(bits);
-    std::atomic_ref(level.crossings[index[lane]])
-        .fetch_add(static_cast<std::uint32_t>(amount[lane]), std::memory_order_relaxed);
-  }
+  const auto for_each_active = [&](const auto& add) {
+    for (std::uint64_t bits = lane_bits(active); bits != 0; bits &= bits - 1) {
+      const int lane = std::countr_zero(bits);
+      add(level.crossings[index[lane]], static_cast<std::uint32_t>(amount[lane]));
+    }
+  };
+  if (target.shared)
+    for_each_active([](std::uint32_t& to, std::uint32_t n) { std::atomic_ref(to).fetch_add(n, std::memory_order_relaxed); });
+  else for_each_active([](std::uint32_t& to, std::uint32_t n) { to += n; });
 }
 
 }  // namespace

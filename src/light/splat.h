@@ -28,7 +28,7 @@ struct SplatLevel {
   std::uint32_t* crossings = nullptr;  ///< per texel and layer (not yet summed over layers), raised by splat_crossings
 };
 
-/// The map that is drawn into; the memory is shared by all threads.
+/// The map that is drawn into; the depths are shared by all threads.
 struct SplatTarget {
   /// The coarsest has texels as large as OpacityMap::kOriginBlock: each of its texels has one first depth, so layers stay what they are.
   static constexpr int kMaxLevels = 3;
@@ -38,6 +38,7 @@ struct SplatTarget {
   std::uint32_t* first_depth = nullptr;  ///< IEEE bits of positive floats, lowered by splat_depths
   std::array<SplatLevel, kMaxLevels> levels;
   int level_count = 1;
+  bool shared = true;  ///< crossings too
   std::array<float, OpacityMap::kLayers> layer_end{};
   float units = 1;  ///< of OpacityMap::kCrossingUnit per crossing, times the strands that each stands for
 };
@@ -51,7 +52,7 @@ void splat_depths(const LineBlock& lines, const SplatTarget& target);
 
 /// Adds the expected crossings of each segment to the texels and layers that it passes: what its pieces, no longer than
 /// a texel, cover of a texel. A band wider than a texel is drawn as parallel lines, into the coarsest level in which it is
-/// still kBandTexels wide. Integer sums: any order, same bits.
+/// still kBandTexels wide. Integer sums: any order, same bits. Thread-safe where the target is `shared`.
 void splat_crossings(const LineBlock& lines, const SplatTarget& target);
 
 }  // namespace pelage
