@@ -28,12 +28,13 @@ class Baselines : public testing::Test {
  protected:
   std::vector<GroomInstance> draw_strands(const LodCut& cut) const {
     const ThickenedStrands thickened(lod_);
-    return draw_levels(groom_, cut, cuts_, groom_.strands->basis, thickened.pen(*groom_.strands, lod_, cuts_));
+    return draw_levels(groom_, cut, cuts_, groom_.strands->basis,
+                       cluster_by_cluster(lod_, thickened.pen(*groom_.strands, lod_, cuts_)));
   }
   std::vector<GroomInstance> draw_cards(const LodCut& cut, const CameraView& view) const {
     const HairCards cards(*groom_.strands, lod_);
     const LodPlace place{lod_, view, compose(view.world_to_camera, groom_.transform)};
-    return draw_levels(groom_, cut, cuts_, CurveBasis::kLinear, cards.pen(*groom_.strands, place));
+    return draw_levels(groom_, cut, cuts_, CurveBasis::kLinear, cluster_by_cluster(lod_, cards.pen(*groom_.strands, place)));
   }
   LodCut all(std::size_t level) const { return one_level(lod_, level); }
   LodCut mixed() const { return HairCards::choose({lod_, view_, view_.world_to_camera}, PrismHairs(lod_), 1, -1, {}); }
@@ -57,7 +58,8 @@ TEST_F(Baselines, ThickenedStrandsKeepWidthsAndTheBudget) {
   groom.strands = std::make_shared<const StrandSet>(even);
   for (std::size_t l = 0; l < lod_.levels(); ++l) {
     const ThickenedStrands thickened(lod_);
-    const auto drawn = draw_levels(groom, all(l), cuts_, even.basis, thickened.pen(*groom.strands, lod_, cuts_));
+    const auto drawn =
+        draw_levels(groom, all(l), cuts_, even.basis, cluster_by_cluster(lod_, thickened.pen(*groom.strands, lod_, cuts_)));
     ASSERT_EQ(drawn.size(), 1u);
     const StrandSet& set = *drawn[0].strands;
     validate(set, "test");

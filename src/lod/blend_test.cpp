@@ -17,6 +17,7 @@
 #include "light/strand_lines.h"
 #include "lod/choose_levels.h"
 #include "lod/draw_levels.h"
+#include "lod/thick_pieces.h"
 #include "lod/fading_strands.h"
 
 namespace pelage {

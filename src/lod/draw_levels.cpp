@@ -1,80 +1,16 @@
 #include "lod/draw_levels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "core/parallel.h"
-#include "kernel/scalar.h"
+#include "frame/strand_part.h"
 #include "lod/fading_strands.h"
 
 namespace pelage {
 namespace {
 
-constexpr std::size_t kPoints = LodHierarchy::kPoints;
-constexpr std::size_t kHairsPerTask = 256;
 constexpr std::size_t kStrandsPerTask = 4096;
-
-/// Draws thick hairs of one groom as an eye sees them.
-class ThickHairPen {
- public:
-  ThickHairPen(const StrandSet& set, const LodPlace& place, const BlendedCut* blend)
-      : set_(set), lod_(place.lod), eye_(place), blend_(blend) {}
-
-  void operator()(std::uint32_t h, std::size_t level, std::uint16_t segments, Pieces& out) const {
-    const HairWidths bands = hair_widths(lod_, eye_, h);
-    const float fibers = static_cast<float>(lod_.hairs[h].fibers) * crossing_ratio(lod_.length_ratios[h]),
-                spread = direction_variance(lod_.length_ratios[h]), twist = lod_.twists.empty() ? 0 : lod_.twists[h];
-    ThickSections& sections = out.sections;
-    for_each_run(segments, [&](const LodRun& run) { out.parts.push_back(hair_part(out.hairs.strand_count(), run)); });
-    const std::uint32_t ends = segments | std::uint32_t{segments} << 1;  // control points of what is drawn
-    for (std::size_t k = 0; k < kPoints; ++k) {
-      const std::size_t i = std::size_t{h} * kPoints + k;
-      const float fiber = 2 * lod_.radii[i];
-      out.hairs.points.push_back(hair_knot(lod_, h, k));
-      const float share = blend_ ? blend_->share(lod_, h, k) : 1;
-      if (blend_) out.shares.push_back(share);
-      out.hairs.widths.push_back(ends >> k & 1 ? covered_width(bands.metres[k], fiber, share * fibers) : 0);
-      sections.major.push_back(lod_.major[i]), sections.minor.push_back(lod_.minor[i]);
-      sections.fibers.push_back(fibers), sections.diameters.push_back(fiber), sections.spreads.push_back(spread);
-      sections.twists.push_back(twist);
-    }
-    sections.levels.push_back(static_cast<std::uint8_t>(level));
-    append_attributes(lod_, h, set_, out.hairs);
-    end_strand(out.hairs);
-  }
-
- private:
-  static StrandPart hair_part(std::size_t hair, const LodRun& run) {
-    return {static_cast<std::uint32_t>(hair), static_cast<std::uint32_t>(run.first),
-            static_cast<std::uint32_t>(run.last - run.first)};
-  }
-
-  const StrandSet& set_;
-  const LodHierarchy& lod_;
-  const LodEye eye_;
-  const BlendedCut* blend_;
-};
-
-/// What stands for the hairs of which `shown(hair)` is some segments, level by level.
-template <class Shown>
-Pieces make_pieces(const LodHierarchy& lod, const Shown& shown, const DrawCluster& draw) {
-  std::vector<Pieces> parts;
-  for (std::size_t level = 0; level < lod.levels(); ++level) {
-    const std::size_t first = lod.level_offsets[level], count = lod.level(level).size(), before = parts.size();
-    parts.resize(before + (count + kHairsPerTask - 1) / kHairsPerTask);
-    parallel_for(count, kHairsPerTask, [&](std::size_t begin, std::size_t end) {
-      Pieces& part = parts[before + begin / kHairsPerTask];
-      part.hairs.offsets = {0};
-      std::size_t shown_hairs = 0;
-      for (std::size_t h = first + begin; h < first + end; ++h) shown_hairs += shown(h) != 0;
-      reserve(shown_hairs * kPoints, shown_hairs, part);
-      for (std::size_t h = first + begin; h < first + end; ++h)
-        if (const std::uint16_t segments = shown(h)) draw(static_cast<std::uint32_t>(h), level, segments, part);
-    });
-  }
-  return join(parts);
-}
 
 /// Segments of every strand that are drawn as they are: those where its finest hair is split.
 std::vector<std::uint16_t> strand_segments(const LodHierarchy& lod, const LodCut& cut) {
@@ -83,15 +19,24 @@ std::vector<std::uint16_t> strand_segments(const LodHierarchy& lod, const LodCut
   return segments;
 }
 
-/// The parts of strands along their segments, in the order of memory.
-std::vector<StrandPart> strand_parts(const std::vector<std::uint16_t>& segments, const StrandCuts& cuts) {
+/// The parts of a strand along these segments.
+void append_parts(const StrandSet& set, std::uint32_t strand, std::uint16_t segments, const StrandCuts& cuts,
+                  std::vector<StrandPart>& parts) {
+  const auto append = [&](const StrandPart& part) {
+    if (part.spans > 0) parts.push_back(part);
+  };
+  if (segments == kAllSegments) return append(whole_strand(set, strand));
+  if (segments == 0) return;
+  const CutStrand cut = cuts(strand);
+  for_each_run(segments, [&](const LodRun& run) { append(cut.part(run.first, run.last)); });
+}
+
+/// Those of all strands, in the order of memory.
+std::vector<StrandPart> strand_parts(const StrandSet& set, const std::vector<std::uint16_t>& segments, const StrandCuts& cuts) {
   std::vector<std::vector<StrandPart>> tasks((segments.size() + kStrandsPerTask - 1) / kStrandsPerTask);
   parallel_for(segments.size(), kStrandsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
-      for_each_run(segments[s], [&](const LodRun& run) {
-        const StrandPart part = cuts.part(static_cast<std::uint32_t>(s), run.first, run.last);
-        if (part.spans > 0) tasks[begin / kStrandsPerTask].push_back(part);
-      });
+      append_parts(set, static_cast<std::uint32_t>(s), segments[s], cuts, tasks[begin / kStrandsPerTask]);
   });
   std::vector<StrandPart> all;
   for (const std::vector<StrandPart>& parts : tasks) all.insert(all.end(), parts.begin(), parts.end());
@@ -130,37 +75,27 @@ void add_hairs(const GroomInstance& groom, CurveBasis basis, Pieces pieces, std:
 
 }  // namespace
 
-DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place, const BlendedCut* blend) {
-  return ThickHairPen(strands, place, blend);
-}
-
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut& cut, const StrandCuts& cuts, CurveBasis basis,
-                                       const DrawCluster& draw) {
+                                       const DrawHairs& draw) {
   const LodHierarchy& lod = *groom.lod;
   const std::vector<std::uint16_t> segments = strand_segments(lod, cut);
   if (all_whole(segments)) return {groom};
   std::vector<GroomInstance> drawn;
-  add_strands(groom, strand_parts(segments, cuts), drawn);
-  add_hairs(groom, basis,
-            make_pieces(
-                lod, [&](std::size_t h) { return shown_segments(lod, cut, h); }, draw),
-            drawn);
+  add_strands(groom, strand_parts(*groom.strands, segments, cuts), drawn);
+  add_hairs(groom, basis, draw([&](std::size_t h) { return shown_segments(lod, cut, h); }), drawn);
   return drawn;
 }
 
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const BlendedCut& cut, const StrandCuts& cuts,
-                                       CurveBasis basis, const DrawCluster& draw) {
+                                       CurveBasis basis, const DrawHairs& draw) {
   const LodHierarchy& lod = *groom.lod;
   const StrandSegments segments = strand_segments(lod, cut);
   if (all_whole(segments.whole)) return {groom};
   std::vector<GroomInstance> drawn;
-  add_strands(groom, strand_parts(segments.whole, cuts), drawn);
+  add_strands(groom, strand_parts(*groom.strands, segments.whole, cuts), drawn);
   Pieces fading = fading_strands(*groom.strands, lod, cut, segments, cuts);
   add_pieces(groom, " (fading strands)", fading, drawn);
-  add_hairs(groom, basis,
-            make_pieces(
-                lod, [&](std::size_t h) { return cut.shown[h]; }, draw),
-            drawn);
+  add_hairs(groom, basis, draw([&](std::size_t h) { return cut.shown[h]; }), drawn);
   return drawn;
 }
 

@@ -13,18 +13,14 @@
 namespace pelage {
 
 /// What stands for `groom` (which has `lod`) where its hairs have the levels of `cut`: the groom itself with GroomInstance::only what is drawn of
-/// its strands, and parts of curves of `basis` with GroomInstance::sections, which `draw` makes of each hair that shows. What is empty is left out; a groom of
+/// its strands, and parts of curves of `basis` with GroomInstance::sections, which `draw` makes of the hairs that show. What is empty is left out; a groom of
 /// which all strands are drawn is returned as it is. The same for any number of threads. O(what is drawn).
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const LodCut& cut, const StrandCuts& cuts, CurveBasis basis,
-                                       const DrawCluster& draw);
+                                       const DrawHairs& draw);
 
 /// The same of levels that blend: what has a share of its place has GroomInstance::shares, and widths that are narrowed by it, and strands that fade are
 /// copies in a groom of their own. `draw` must draw with those shares.
 std::vector<GroomInstance> draw_levels(const GroomInstance& groom, const BlendedCut& cut, const StrandCuts& cuts,
-                                       CurveBasis basis, const DrawCluster& draw);
-
-/// Draws thick hairs: Catmull-Rom curves through the knots of their B-splines, so that pieces of one hair meet exactly, each point as wide as
-/// covered_width() of the cross-section that `place` sees; of those that have a share by `blend`, unless it is null, of so many of their fibers. Refers to its arguments.
-DrawCluster thick_hair_pen(const StrandSet& strands, const LodPlace& place, const BlendedCut* blend = nullptr);
+                                       CurveBasis basis, const DrawHairs& draw);
 
 }  // namespace pelage

@@ -1,4 +1,5 @@
 #include "lod/draw_levels.h"
+#include "lod/thick_pieces.h"
 
 #include <gtest/gtest.h>
 #include <pelage/grow.h>

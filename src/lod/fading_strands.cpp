@@ -19,8 +19,9 @@ std::uint16_t passed_whole(const BlendedCut& cut, std::size_t hair) {
 /// Appends a strand with the parts that fade, `passed` of it at its hair's control points.
 void append_fading(const StrandSet& set, std::uint32_t strand, std::uint16_t fading, const float* passed,
                    const StrandCuts& cuts, Pieces& out) {
+  const CutStrand cut = cuts(strand);
   for_each_run(fading, [&](const LodRun& run) {
-    StrandPart part = cuts.part(strand, run.first, run.last);
+    StrandPart part = cut.part(run.first, run.last);
     part.strand = static_cast<std::uint32_t>(out.hairs.strand_count());
     if (part.spans > 0) out.parts.push_back(part);
   });
@@ -28,7 +29,7 @@ void append_fading(const StrandSet& set, std::uint32_t strand, std::uint16_t fad
   const auto stride = static_cast<float>(points_per_span(set.basis));
   append_strand(set, strand, 1, out.hairs);
   for (std::size_t i = first; i < out.hairs.points.size(); ++i) {
-    out.shares.push_back(cuts.between(strand, passed, static_cast<float>(i - first) / stride));
+    out.shares.push_back(cut.between(passed, static_cast<float>(i - first) / stride));
     out.hairs.widths[i] *= out.shares.back();
   }
 }

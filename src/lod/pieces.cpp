@@ -19,7 +19,28 @@ void reserve(std::size_t count, std::vector<T>& values) {
   prefer_huge_pages(values.data(), count * sizeof(T));
 }
 
+constexpr std::size_t kHairsPerTask = 256;
+
+Pieces draw_clusters(const LodHierarchy& lod, const ShownSegments& shown, const DrawCluster& draw) {
+  std::vector<Pieces> parts;
+  for (std::size_t level = 0; level < lod.levels(); ++level) {
+    const std::size_t first = lod.level_offsets[level], count = lod.level(level).size(), before = parts.size();
+    parts.resize(before + (count + kHairsPerTask - 1) / kHairsPerTask);
+    parallel_for(count, kHairsPerTask, [&](std::size_t begin, std::size_t end) {
+      Pieces& part = parts[before + begin / kHairsPerTask];
+      part.hairs.offsets = {0};
+      for (std::size_t h = first + begin; h < first + end; ++h)
+        if (const std::uint16_t segments = shown(h)) draw(static_cast<std::uint32_t>(h), level, segments, part);
+    });
+  }
+  return join(parts);
+}
+
 }  // namespace
+
+DrawHairs cluster_by_cluster(const LodHierarchy& lod, DrawCluster draw) {
+  return [&lod, draw = std::move(draw)](const ShownSegments& shown) { return draw_clusters(lod, shown, draw); };
+}
 
 Vec3 hair_knot(const LodHierarchy& lod, std::size_t hair, std::size_t k) {
   const Vec3* c = &lod.centers[hair * LodHierarchy::kPoints];

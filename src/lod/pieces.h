@@ -42,6 +42,15 @@ struct Pieces {
 /// at once, each with pieces of its own. `level` is the hair's.
 using DrawCluster = std::function<void(std::uint32_t hair, std::size_t level, std::uint16_t segments, Pieces& out)>;
 
+/// Segments of a hair that are drawn, a bit for each.
+using ShownSegments = std::function<std::uint16_t(std::size_t hair)>;
+
+/// Makes what stands for all hairs of which some segments are drawn.
+using DrawHairs = std::function<Pieces(const ShownSegments& shown)>;
+
+/// A cluster after the other, level by level. Refers to `lod`.
+DrawHairs cluster_by_cluster(const LodHierarchy& lod, DrawCluster draw);
+
 /// Knot k of the B-spline along the center of a hair.
 Vec3 hair_knot(const LodHierarchy& lod, std::size_t hair, std::size_t k);
 

@@ -3,28 +3,35 @@
 
 #include <pelage/scene.h>
 
+#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "lod/choose_levels.h"
 
 namespace pelage {
 
-/// Of each strand the places of its thick hair's control points, to whole spans.
+/// Of a strand the places of its thick hair's control points, to whole spans.
+struct CutStrand {
+  std::uint32_t strand;
+  std::array<std::uint32_t, LodHierarchy::kPoints> spans;  ///< from the root
+
+  /// Along segments first … last − 1; of no spans where it has too few.
+  StrandPart part(std::size_t first, std::size_t last) const { return {strand, spans[first], spans[last] - spans[first]}; }
+  /// What `at` [kPoints], values at the control points, is at the end of so many spans from the root: straight between the cuts.
+  float between(const float* at, float from_root) const;
+};
+
+/// Cuts strands of a groom. Refers to it: keep it alive. Where the groom moves, other poses are cut as this one, so that they have the same parts.
 class StrandCuts {
  public:
-  /// By shares of the length of control polygons: of the spans' ends the nearest, so that parts are as long in the mean as what
-  /// they stand for. O(points), in parallel. Strands in other poses are cut alike.
-  explicit StrandCuts(const StrandSet& strands);
+  explicit StrandCuts(const StrandSet& strands) : strands_(&strands) {}
 
-  /// The part of a strand along segments first … last − 1; of no spans where it has too few.
-  StrandPart part(std::uint32_t strand, std::size_t first, std::size_t last) const;
-
-  /// What `at` [kPoints], values at the control points, is at the end of so many spans from the root: straight between the cuts.
-  float between(std::uint32_t strand, const float* at, float spans) const;
+  /// By shares of the length of the control polygon: of the spans' ends the nearest, so that parts are as long in the mean as what
+  /// they stand for. O(points of the strand).
+  CutStrand operator()(std::uint32_t strand) const;
 
  private:
-  std::vector<std::uint32_t> cuts_;  // [strands · kPoints], spans from the root
+  const StrandSet* strands_;
 };
 
 }  // namespace pelage

@@ -9,6 +9,7 @@
 #include "frame/camera_view.h"
 #include "frame/strand_part.h"
 #include "lod/draw_levels.h"
+#include "lod/thick_pieces.h"
 
 namespace pelage {
 namespace {
@@ -67,9 +68,12 @@ std::vector<GroomInstance> ThickHairs::draw(const GroomInstance& instance, const
   if (!groom.blended.empty())
     return draw_levels(instance, groom.blended, groom.cuts, CurveBasis::kCatmullRom,
                        thick_hair_pen(set, place, &groom.blended));
-  if (groom.cards) return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kLinear, groom.cards->pen(set, place));
+  if (groom.cards)
+    return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kLinear,
+                       cluster_by_cluster(place.lod, groom.cards->pen(set, place)));
   if (groom.thickened)
-    return draw_levels(instance, groom.cut, groom.cuts, set.basis, groom.thickened->pen(set, place.lod, groom.cuts));
+    return draw_levels(instance, groom.cut, groom.cuts, set.basis,
+                       cluster_by_cluster(place.lod, groom.thickened->pen(set, place.lod, groom.cuts)));
   return draw_levels(instance, groom.cut, groom.cuts, CurveBasis::kCatmullRom, thick_hair_pen(set, place));
 }
 

@@ -37,8 +37,9 @@ ThickenedStrands::ThickenedStrands(const LodHierarchy& lod) {
 
 DrawCluster ThickenedStrands::pen(const StrandSet& set, const LodHierarchy& lod, const StrandCuts& cuts) const {
   return [this, &set, &lod, &cuts](std::uint32_t hair, std::size_t level, std::uint16_t segments, Pieces& out) {
+    const CutStrand cut = cuts(strand(hair));
     for_each_run(segments, [&](const LodRun& run) {
-      StrandPart part = cuts.part(strand(hair), run.first, run.last);
+      StrandPart part = cut.part(run.first, run.last);
       part.strand = static_cast<std::uint32_t>(out.hairs.strand_count());
       if (part.spans > 0) out.parts.push_back(part);
     });
