@@ -3,6 +3,7 @@
 #include <pelage/lod.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -22,10 +23,16 @@ struct Extent {
   void extend(const Extent& e) { box.extend(e.box), widest = std::max(widest, e.widest); }
 };
 
-/// The widest that a control point may look: thick hairs are as wide as the eye sees them, and lights know no eye.
-float widest_seen(const GroomInstance& groom, std::size_t point) {
+/// The widest that control points first … last may look: thick hairs are as wide as the eye sees them, and lights know no eye.
+float widest_seen(const GroomInstance& groom, std::size_t first, std::size_t last) {
   const ThickSections* thick = groom.sections.get();
-  return thick ? 2 * std::max(length(thick->major[point]), length(thick->minor[point])) : groom.strands->width(point);
+  float widest = 0, axis2 = 0;
+  if (!thick)
+    for (std::size_t i = first; i <= last; ++i) widest = std::max(widest, groom.strands->width(i));
+  else
+    for (std::size_t i = first; i <= last; ++i)
+      axis2 = std::max({axis2, dot(thick->major[i], thick->major[i]), dot(thick->minor[i], thick->minor[i])});
+  return thick ? 2 * std::sqrt(axis2) : widest;
 }
 
 Extent part_extent(const GroomInstance& groom, const StrandPart& part) {
@@ -37,8 +44,8 @@ Extent part_extent(const GroomInstance& groom, const StrandPart& part) {
     const Vec3 p = transform_point(groom.transform, set.points[i]);
     e.box.lower = {std::min(e.box.lower.x, p.x), std::min(e.box.lower.y, p.y), std::min(e.box.lower.z, p.z)};
     e.box.upper = {std::max(e.box.upper.x, p.x), std::max(e.box.upper.y, p.y), std::max(e.box.upper.z, p.z)};
-    e.widest = std::max(e.widest, widest_seen(groom, i));
   }
+  e.widest = widest_seen(groom, first, last);
   return e;
 }
 

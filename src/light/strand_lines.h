@@ -41,7 +41,7 @@ class StrandLines {
   void append(const StrandPart& part, const std::vector<Vec4>& weights, LineBlock& block) const;
 
   const GroomInstance* groom_;
-  std::vector<Band> bands_;  // [points] of thick hairs; else empty
+  Buffer<Band> bands_;  // [points] of thick hairs; else empty
   float width_scale_;
   float mean_span_ = 0, widest_band_ = 0;
   Bounds bounds_, reach_;
