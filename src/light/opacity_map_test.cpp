@@ -62,7 +62,7 @@ Light directional(Vec3 direction) {
 }
 
 OpacityMap map_of(const GroomInstance& groom, const Light& light, int size) {
-  const std::vector<StrandLines> lines{StrandLines(groom)};
+  const std::vector<StrandLines> lines = strand_lines({groom});
   return build_opacity_map(lines, light_views(light, bounds(lines), size).front());
 }
 
@@ -178,7 +178,7 @@ TEST(OpacityMap, PointLightSpreadsWithDistance) {
 
 TEST(OpacityMap, StridedStrandsCountForThoseLeftOut) {
   GroomInstance groom = groom_of(slab(20000, 0.5f), 2e-3f);
-  const std::vector<StrandLines> all{StrandLines(groom)};
+  const std::vector<StrandLines> all = strand_lines({groom});
   const CameraView view = light_views(directional({0, 0, -1}), bounds(all), 32).front();
   const OpacityMap map = build_opacity_map(all, view, {8});
   double mean = 0;
@@ -235,6 +235,19 @@ TEST(OpacityMap, SameBitsForAnyThreadsAndInstructionSet) {
   set_thread_count(0);
 }
 
+// Threads have sheets of their own, as many as memory allows, else all have one; of every level that wide bands are drawn into.
+TEST(OpacityMap, SheetsOfThreadsSumToTheSheetOfAll) {
+  const std::vector<Straight> lines = thicket(8000);
+  const Light light = directional({0.3f, -1, 0.2f});
+  set_thread_count(1);
+  const OpacityMap one = map_of(groom_of(lines, 0.04f), light, 512);
+  for (const int threads : {4, 70}) {  // 4 MiB a sheet
+    set_thread_count(threads);
+    EXPECT_TRUE(same(one, map_of(groom_of(lines, 0.04f), light, 512))) << threads;
+  }
+  set_thread_count(0);
+}
+
 // Strands across a plane, one crossing every 5 widths: those on both of two ways of `length` widths that part by `angle`, counted on a grid.
 TEST(Opacity, SharedCrossingsAreThoseOnBothWays) {
   constexpr float kPerWidth = 0.2f, kStep = 0.01f;
@@ -254,7 +267,7 @@ TEST(Opacity, SharedCrossingsAreThoseOnBothWays) {
 TEST(OpacityMap, NoStrandsGiveAnEmptyMap) {
   GroomInstance groom;
   groom.strands = std::make_shared<StrandSet>();
-  const OpacityMap map = build_opacity_map({StrandLines(groom)}, CameraView{});
+  const OpacityMap map = build_opacity_map(strand_lines({groom}), CameraView{});
   EXPECT_TRUE(map.crossings.empty());
   EXPECT_EQ(crossings_at(map, {0, 0, 0}), 0);
 }
