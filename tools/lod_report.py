@@ -143,13 +143,20 @@ def traced(shop, report, options):
 # ---- Which world wins where --------------------------------------------------------------------------------------------------------------------
 
 
+def kinds_of_detail(options):
+    """{label: [(name, options of `pelage render`)]}, of each kind fewer and fewer segments."""
+    by_width = {**{k: METHODS[k] for k in ("thick", "fiber", "strands", "bundles", "cards")}, "card-bundles": ("cards, as bundles", ["--lod-as", "cards"])}
+    kinds = {label: [(f"{name}-{w}", [*arguments, "--lod-pixels", str(w)]) for w in options.widths] for name, (label, arguments) in by_width.items()}
+    return {**kinds, "thick, by error": [(f"error-{e}", ["--lod-error", str(e)]) for e in options.errors]}
+
+
 def worlds(shop, report, options):
     cache = TraceCache(shop, options.cache)
     color, light = second(options.colors), second(options.lights)
-    kinds = {**{k: METHODS[k] for k in ("thick", "fiber", "strands", "bundles", "cards")}, "card bundles": ("cards, as bundles", ["--lod-as", "cards"])}
     report.text("Which world wins where", heading=True)
     report.text("FLIP against path tracing over the number of segments that are drawn and over the time of the frame, as widths on the screen "
-                f"({', '.join(map(str, options.widths))} pixels) allow fewer and fewer; all strands for comparison. {color}, light at {light}°. "
+                f"({', '.join(map(str, options.widths))} pixels) or predicted errors ({', '.join(map(str, options.errors))}) allow fewer and fewer; all strands for "
+                f"comparison. {color}, light at {light}°. "
                 "Segments of cards are runs of texels, which on a GPU would be a texture (docs/lod.md).")
     told = []
     for style in options.styles:
@@ -158,10 +165,10 @@ def worlds(shop, report, options):
             shot, curves = Shot(stage, name, color, light), {}
             truth = shot.truth(cache)
             picture, _, stamp = shot.picture("full", METHODS["full"][1])
-            curves["all strands"] = [(stage_items(stamp["told"], "groom"), work(stamp), shot.flip(picture, truth))]
-            for kind, (label, arguments) in kinds.items():
-                for width in options.widths:
-                    picture, _, stamp = shot.picture(f"{kind.replace(' ', '-')}-{width}", [*arguments, "--lod-pixels", str(width)])
+            curves["all strands"] = [(stage_items(stamp["told"], "groom") - options.strands, work(stamp), shot.flip(picture, truth))]
+            for label, steps in kinds_of_detail(options).items():
+                for step, arguments in steps:
+                    picture, _, stamp = shot.picture(step, arguments)
                     curves.setdefault(label, []).append((stage_items(stamp["told"], "lod"), work(stamp), shot.flip(picture, truth)))
             told += [{"style": style, "shot": name, "kind": k, "segments": a, "seconds": b, "flip": c} for k, points in curves.items() for a, b, c in points]
             for axis, what in ((0, "segments"), (1, "seconds")):
@@ -169,7 +176,23 @@ def worlds(shop, report, options):
                 (shop.folder / file).write_text(scatter_picture({k: [(p[axis], p[2]) for p in points] for k, points in curves.items()}, what, "FLIP"))
                 report.picture(file, f"{style}, {name}: FLIP over {what}.")
     report.numbers["worlds"] = told
+    worlds_plot(shop, report, told)
     worlds_table(report, told)
+
+
+def worlds_plot(shop, report, told):
+    """All pictures in one plot: steps of each kind, means over hairstyles and distances."""
+    whole = {(t["style"], t["shot"]): t for t in told if t["kind"] == "all strands"}
+    seen = {}  # by kind and case, in order of the steps
+    for t in told:
+        seen.setdefault(t["kind"], {}).setdefault((t["style"], t["shot"]), []).append(t)
+    curves = {}
+    for kind, cases in seen.items():
+        for steps in zip(*([(t["segments"] / whole[case]["segments"], t["flip"] / whole[case]["flip"]) for t in some] for case, some in cases.items())):
+            curves.setdefault(kind, []).append((statistics.geometric_mean(s[0] for s in steps), statistics.mean(s[1] for s in steps)))
+    (shop.folder / "worlds.svg").write_text(scatter_picture(curves, "segments over those of all strands", "FLIP over all strands'"))
+    report.picture("worlds.svg", f"All of {len(whole)} pictures: mean of FLIP over that of all strands, over segments drawn (geometric mean).")
+    report.table(["kind", "segments: FLIP over all strands', means of all pictures"], [[kind, ", ".join(f"{100 * x:.3g} %: {y:.3f}" for x, y in curve)] for kind, curve in curves.items()])
 
 
 def worlds_table(report, told):
@@ -436,6 +459,7 @@ def parse_options():
     options.whole = options.strands == 100000
     options.tile, options.render_samples = (64, 4) if quick else (128, 16)
     options.widths, options.shares = ((2, 8), (0.5, 0.003)) if quick else ((1, 2, 4, 8), SHARES)
+    options.errors = (0.05, 0.1) if quick else (0.02, 0.04, 0.08, 0.16)
     options.speed_size, options.dolly_size = (64, 48) if quick else (1024, 256)
     options.frames, options.moving_frames = options.frames or (3 if quick else 60), 3 if quick else 48
     options.dolly_styles = options.styles[:1] + [s for s in options.styles[1:] if s == "curly"]
