@@ -52,7 +52,7 @@ class Writer {
     resize(all);
   }
 
-  /// `hair` and `part` are where the first curve and part go; those after go behind them.
+  /// Hairs begin … end − 1; `at` is where their first curve and part go.
   void operator()(std::size_t begin, std::size_t end, Counts at, const ShownSegments& shown) {
     for (std::size_t h = begin; h < end; ++h) {
       const std::uint16_t segments = shown(h);
