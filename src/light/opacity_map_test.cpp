@@ -62,7 +62,8 @@ Light directional(Vec3 direction) {
 }
 
 OpacityMap map_of(const GroomInstance& groom, const Light& light, int size) {
-  const std::vector<StrandLines> lines = strand_lines({groom});
+  const std::vector<GroomInstance> grooms{groom};
+  const std::vector<StrandLines> lines = strand_lines(grooms);
   return build_opacity_map(lines, light_views(light, bounds(lines), size).front());
 }
 
@@ -178,7 +179,8 @@ TEST(OpacityMap, PointLightSpreadsWithDistance) {
 
 TEST(OpacityMap, StridedStrandsCountForThoseLeftOut) {
   GroomInstance groom = groom_of(slab(20000, 0.5f), 2e-3f);
-  const std::vector<StrandLines> all = strand_lines({groom});
+  const std::vector<GroomInstance> grooms{groom};
+  const std::vector<StrandLines> all = strand_lines(grooms);
   const CameraView view = light_views(directional({0, 0, -1}), bounds(all), 32).front();
   const OpacityMap map = build_opacity_map(all, view, {8});
   double mean = 0;
@@ -265,9 +267,9 @@ TEST(Opacity, SharedCrossingsAreThoseOnBothWays) {
 }
 
 TEST(OpacityMap, NoStrandsGiveAnEmptyMap) {
-  GroomInstance groom;
-  groom.strands = std::make_shared<StrandSet>();
-  const OpacityMap map = build_opacity_map(strand_lines({groom}), CameraView{});
+  std::vector<GroomInstance> grooms(1);
+  grooms[0].strands = std::make_shared<StrandSet>();
+  const OpacityMap map = build_opacity_map(strand_lines(grooms), CameraView{});
   EXPECT_TRUE(map.crossings.empty());
   EXPECT_EQ(crossings_at(map, {0, 0, 0}), 0);
 }

@@ -47,7 +47,9 @@ class StrandLines {
   Bounds bounds_, reach_;
 };
 
+/// Refer to `grooms`: keep them alive.
 std::vector<StrandLines> strand_lines(const std::vector<GroomInstance>& grooms);
+std::vector<StrandLines> strand_lines(std::vector<GroomInstance>&&) = delete;
 Bounds bounds(const std::vector<StrandLines>& grooms);
 
 }  // namespace pelage
