@@ -17,9 +17,9 @@ namespace {
 constexpr int kEnvironmentLevels = 4;
 /// Their maps are blurred by their spread anyway.
 constexpr int kEnvironmentMapSize = 192;
-/// … and drawn from about this many strands.
+/// … and drawn from about this many strands at least.
 constexpr std::size_t kEnvironmentStrands = 4000;
-/// Maps of single lights are drawn from about this many strands at least: the others of a larger groom tell them little.
+/// Maps of single lights are drawn from about this many strands: the others of a larger groom tell them little.
 constexpr std::size_t kLightStrands = 50000;
 
 bool emits(const Light& light) { return light.intensity.x > 0 || light.intensity.y > 0 || light.intensity.z > 0; }
@@ -34,10 +34,10 @@ struct MapJob {
   std::size_t strand_stride;
 };
 
-std::size_t stride_for(const Scene& scene, std::size_t strands) {
+std::size_t drawn_strands(const Scene& scene) {
   std::size_t total = 0;
   for (const GroomInstance& groom : scene.grooms) total += drawn_parts(groom);
-  return std::max<std::size_t>(1, total / strands);
+  return total;
 }
 
 /// Appends `group` to the rig, with its maps; all opacity maps of a group are drawn together.
@@ -66,7 +66,7 @@ void prepare(std::vector<PreparedLight> group, const MapJob& job, LightRig& rig)
 /// The environment as directional lights with a spread.
 void prepare_environment(MapJob job, LightRig& rig) {
   job.size = std::min(kEnvironmentMapSize, job.scene.settings.opacity_map_size);
-  job.strand_stride = stride_for(job.scene, kEnvironmentStrands);
+  job.strand_stride = std::max<std::size_t>(1, drawn_strands(job.scene) / kEnvironmentStrands);
   std::vector<PreparedLight> group;
   for (const EnvironmentPiece& piece : cut_environment(job.scene.environment, kEnvironmentLevels)) {
     PreparedLight& prepared = group.emplace_back();
@@ -91,7 +91,7 @@ LightRig prepare_lights(const Scene& scene, const MeshTracer& meshes) {
              lines,
              hair.empty() ? meshes.bounds() : hair,
              scene.settings.opacity_map_size,
-             stride_for(scene, kLightStrands)};
+             std::max<std::size_t>(1, (drawn_strands(scene) + kLightStrands / 2) / kLightStrands)};
   std::vector<PreparedLight> group;
   for (const Light& light : scene.lights) {
     if (!emits(light)) continue;
