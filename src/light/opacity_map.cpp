@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kStrandsPerTask = 256;
 /// Spans longer than this many texels are split, so that maps see curves as curves.
 constexpr float kTexelsPerSegment = 8;
-/// Threads have sheets of their own up to this many bytes in all.
+/// Threads have sheets of their own where those of level 0 take no more bytes in all; coarser levels take a third of that at most.
 constexpr std::size_t kMaxSheetBytes = std::size_t{256} << 20;
 /// Crossings beyond this (262,144 strands) saturate: signed conversion is what every instruction set has.
 constexpr std::uint32_t kMaxUnits = 0x7fffffff;

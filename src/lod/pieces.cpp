@@ -2,24 +2,17 @@
 
 #include <iterator>
 
-#include "core/buffer.h"
 #include "core/parallel.h"
 
 namespace pelage {
 namespace {
 
+constexpr std::size_t kHairsPerTask = 256;
+
 template <class T>
 void append(const std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
-
-template <class T>
-void reserve(std::size_t count, std::vector<T>& values) {
-  values.reserve(count);
-  prefer_huge_pages(values.data(), count * sizeof(T));
-}
-
-constexpr std::size_t kHairsPerTask = 256;
 
 Pieces draw_clusters(const LodHierarchy& lod, const ShownSegments& shown, const DrawCluster& draw) {
   std::vector<Pieces> parts;
@@ -69,8 +62,12 @@ void append_attributes(const StrandSet& from, std::size_t s, StrandSet& to) {
 void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& from, StrandSet& to) {
   if (!lod.colors.empty()) to.colors.push_back(lod.colors[h]);
   if (!lod.root_uv.empty()) to.root_uv.push_back(lod.root_uv[h]);
+  to.strand_id.push_back(first_strand_id(lod, h, from));
+}
+
+std::uint32_t first_strand_id(const LodHierarchy& lod, std::size_t h, const StrandSet& from) {
   const std::uint32_t one = lod.order[lod.hairs[h].first_strand];
-  to.strand_id.push_back(from.strand_id.empty() ? one : from.strand_id[one]);
+  return from.strand_id.empty() ? one : from.strand_id[one];
 }
 
 void append_strand(const StrandSet& set, std::uint32_t strand, float widen, StrandSet& pieces) {

@@ -10,6 +10,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/buffer.h"
+
 namespace pelage {
 
 /// Segments first … last − 1 of a hair.
@@ -56,13 +58,21 @@ Vec3 hair_knot(const LodHierarchy& lod, std::size_t hair, std::size_t k);
 
 /// Strand s of `from` without its points, appended to `to`.
 void append_attributes(const StrandSet& from, std::size_t s, StrandSet& to);
-/// What thick hair `h` of a chain of `from` has besides points, appended to `to`; the strand's number is that of its first one.
+/// Number of the first strand of thick hair `h` of a chain of `from`: the hair's own.
+std::uint32_t first_strand_id(const LodHierarchy& lod, std::size_t h, const StrandSet& from);
+/// What thick hair `h` of a chain of `from` has besides points, appended to `to`.
 void append_attributes(const LodHierarchy& lod, std::size_t h, const StrandSet& from, StrandSet& to);
 /// Closes the strand whose points were appended last.
 void end_strand(StrandSet& set);
 
 /// A strand, `widen` times as wide as it is.
 void append_strand(const StrandSet& set, std::uint32_t strand, float widen, StrandSet& pieces);
+
+template <class T>
+void reserve(std::size_t count, std::vector<T>& values) {
+  values.reserve(count);
+  prefer_huge_pages(values.data(), count * sizeof(T));
+}
 
 /// Makes room for so many points of so many curves.
 void reserve(std::size_t points, std::size_t curves, Pieces& pieces);

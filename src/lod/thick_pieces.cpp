@@ -5,7 +5,6 @@
 #include <bit>
 #include <vector>
 
-#include "core/buffer.h"
 #include "core/parallel.h"
 
 namespace pelage {
@@ -40,8 +39,7 @@ std::size_t level_of(const LodHierarchy& lod, std::size_t hair) {
 
 template <class T>
 void make_room(std::vector<T>& values, std::size_t count) {
-  values.reserve(count), prefer_huge_pages(values.data(), count * sizeof(T));
-  values.resize(count);
+  reserve(count, values), values.resize(count);
 }
 
 /// Writes thick hairs of one groom where they belong.
@@ -110,8 +108,7 @@ class Writer {
   void write_attributes(std::size_t h, std::size_t to) {
     all_.sections.levels[to] = static_cast<std::uint8_t>(level_of(lod_, h));
     all_.hairs.offsets[to + 1] = static_cast<std::uint32_t>((to + 1) * kPoints);
-    const std::uint32_t one = lod_.order[lod_.hairs[h].first_strand];
-    all_.hairs.strand_id[to] = set_.strand_id.empty() ? one : set_.strand_id[one];
+    all_.hairs.strand_id[to] = first_strand_id(lod_, h, set_);
     if (!lod_.colors.empty()) all_.hairs.colors[to] = lod_.colors[h];
     if (!lod_.root_uv.empty()) all_.hairs.root_uv[to] = lod_.root_uv[h];
   }
