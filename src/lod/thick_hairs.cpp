@@ -15,7 +15,7 @@ namespace pelage {
 namespace {
 
 constexpr int kSmallestMap = 64;
-constexpr float kTexelsPerPixel = 1.25f;  // of the box's diagonal; lights see it shorter
+constexpr float kTexelsPerPixel = 1.75f;  // of the box's diagonal; lights see it shorter
 
 /// How wide a box may look on the screen, pixels; INFINITY before the near plane.
 float pixels_wide(const Bounds& box, const CameraView& view, const Affine& to_camera) {

@@ -108,9 +108,12 @@ PELAGE_LANES_FN ShadeIllumination shade_illuminate(const LightConstants& light, 
   return i;
 }
 
+const float kLeansLittle = 0.04f;  // variance of directions up to which wider lobes do for fibers that lean
+const float kLeanLeft = 0.3f;      // share of it that widens lobes where fibers are shaded at four places of their cone
+
 // A strand where it is seen, and everything about it that does not depend on the light.
 struct ShadePlace {
-  Vec3 position, tangent;
+  Vec3 position, tangent, to_eye;
   Vec3 across_o;  // direction to the eye in the normal plane, unit length
   ScatterFiber fiber;
   ScatterLobes lobes;        // of Marschner's kinds of lobes
@@ -120,6 +123,7 @@ struct ShadePlace {
   ScatterBack back;          //
   Vec3 tuft_color;           // of what has a diffuse lobe
   ScatterBundle bundle;      // of thick hairs: of the other fibers, which shade the one that is seen
+  Float others;              // of thick hairs: how many these are
   Float lean;         // of thick hairs: variance of the fibers' directions, half the mean square of the sine by which they lean
   Float upright;      // and the cosine, by which the sines of their mean inclinations are less than that of the center
   Float level_o;      // of thick hairs: cosine of the center's inclination to the eye
@@ -145,45 +149,53 @@ PELAGE_LANES_FN ScatterArtistFiber shade_artist_fiber(const pelage::kernel::Scat
   return f;
 }
 
+// A place of the batch; shade_toward_eye() completes it.
 PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch& batch, std::size_t i) {
   const HairMaterial& material = k.material;
   const auto vec = [i](const ShadeBatch::Lanes& x, const ShadeBatch::Lanes& y, const ShadeBatch::Lanes& z) {
     return Vec3(load(x.data() + i), load(y.data() + i), load(z.data() + i));
   };
-  ShadePlace s;
-  s.position = vec(batch.px, batch.py, batch.pz);
-  s.tangent = vec(batch.tx, batch.ty, batch.tz);
-  const Vec3 to_eye = vec(batch.ex, batch.ey, batch.ez);
-  const Vec3 absorption = vec(batch.absorb_r, batch.absorb_g, batch.absorb_b);
-  Float sin_o = v_clamp(dot(to_eye, s.tangent), Float(-1.0f), Float(1.0f));
-  s.across_o = v_normalize(to_eye - s.tangent * sin_o);
-  if (k.bundled) {
-    s.lean = load(batch.lean.data() + i);
-    s.upright = sqrt(max(Float(1.0f) - Float(2.0f) * s.lean, Float(0.0f)));
-    s.level_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
-    sin_o = sin_o * s.upright;
-  }
   const auto own = [&](const ShadeBatch::Lanes& lanes, float shared) {
     return k.mapped ? load(lanes.data() + i) : Float(shared);
   };
+  ShadePlace s{};
+  s.position = vec(batch.px, batch.py, batch.pz);
+  s.tangent = vec(batch.tx, batch.ty, batch.tz);
+  s.to_eye = vec(batch.ex, batch.ey, batch.ez);
+  const Vec3 absorption = vec(batch.absorb_r, batch.absorb_g, batch.absorb_b);
   const Float beta_azimuthal = own(batch.beta_azimuthal, material.beta_azimuthal);
   s.fiber = scatter_fiber(Float(material.eta), own(batch.beta_longitudinal, material.beta_longitudinal), beta_azimuthal,
                           own(batch.tilt, material.cuticle_tilt), Float(material.specular_gain), absorption);
   s.table = own(batch.table, 0);
-  const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
   s.depth_shift = load(batch.depth_shift.data() + i);
   s.width = Float(2.0f) * load(batch.fiber_radius.data() + i);
   if (k.bundled) {
-    const Float others = max(load(batch.fibers.data() + i) - Float(1.0f), Float(0.0f));
-    s.bundle = scatter_bundle_buffon(others, load(batch.fiber_radius.data() + i), load(batch.half_width.data() + i),
+    s.others = max(load(batch.fibers.data() + i) - Float(1.0f), Float(0.0f));
+    s.lean = load(batch.lean.data() + i);
+    s.bundle = scatter_bundle_buffon(s.others, load(batch.fiber_radius.data() + i), load(batch.half_width.data() + i),
                                      load(batch.half_depth.data() + i));
   }
-  const bool probe = k.probe.texels != nullptr;
   const bool diffuse = material.model == HairMaterial::Model::kKajiyaKay || material.model == HairMaterial::Model::kPelekis;
-  if (probe || (diffuse && !k.dual_scattering)) s.tuft_color = scatter_tuft_color(absorption, beta_azimuthal);
-  if (probe || material.model == HairMaterial::Model::kPelekis) s.pelekis = scatter_prepare_pelekis(s.fiber, sin_o, cos_o);
+  if (k.probe.texels != nullptr || (diffuse && !k.dual_scattering))
+    s.tuft_color = scatter_tuft_color(absorption, beta_azimuthal);
+  return s;
+}
+
+// What the place scatters toward the eye, by its tangent.
+PELAGE_LANES_FN void shade_toward_eye(const ShadeConstants& k, ShadePlace& s) {
+  const HairMaterial& material = k.material;
+  Float sin_o = v_clamp(dot(s.to_eye, s.tangent), Float(-1.0f), Float(1.0f));
+  s.across_o = v_normalize(s.to_eye - s.tangent * sin_o);
+  if (k.bundled) {
+    s.upright = sqrt(max(Float(1.0f) - Float(2.0f) * s.lean, Float(0.0f)));
+    s.level_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
+    sin_o = sin_o * s.upright;
+  }
+  const Float cos_o = sqrt(max(Float(1.0f) - sin_o * sin_o, Float(0.0f)));
+  if (k.probe.texels != nullptr || material.model == HairMaterial::Model::kPelekis)
+    s.pelekis = scatter_prepare_pelekis(s.fiber, sin_o, cos_o);
   if (material.model == HairMaterial::Model::kSadeghi) {
-    s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), scatter_crossing_color(absorption), sin_o, cos_o);
+    s.artist = scatter_prepare_sadeghi(shade_artist_fiber(k.artist), scatter_crossing_color(s.fiber.sigma_a), sin_o, cos_o);
     if (k.dual_scattering) s.averages = scatter_averages_sadeghi(s.artist);
   } else if (material.model == HairMaterial::Model::kPelekis) {
     if (k.dual_scattering) s.averages = scatter_averages_pelekis(s.pelekis);
@@ -192,7 +204,6 @@ PELAGE_LANES_FN ShadePlace shade_place(const ShadeConstants& k, const ShadeBatch
     if (k.dual_scattering) s.averages = scatter_averages(s.lobes);
   }
   if (k.dual_scattering) s.back = scatter_back(s.averages, sin_o, cos_o);
-  return s;
 }
 
 // Directions of a light about the fiber.
@@ -206,12 +217,16 @@ struct ShadeAngles {
 // Of fibers that lean by δ toward all sides alike about a center with inclination θ the mean sine of inclination is cos δ sin θ: lobes are looked up
 // there. The mean square of the cosine, by which fibers meet light, is cos²θ + σ²(2 − 3 cos²θ), σ² = sin²δ/2; its root is above the mean cosine by
 // 2 % for δ = 57°, 11 % for 90°, both at θ = 0, where it is most.
+PELAGE_LANES_FN Float shade_mean_cosine(Float cos, Float lean) {
+  const Float cos2 = cos * cos;
+  return sqrt(max(cos2 + lean * (Float(2.0f) - Float(3.0f) * cos2), Float(0.0f)));
+}
+
 PELAGE_LANES_FN void shade_lean(const ShadePlace& s, ShadeAngles& a) {
-  const Float cos2 = a.cos_i * a.cos_i, met2 = cos2 + s.lean * (Float(2.0f) - Float(3.0f) * cos2);
   a.level_i = a.cos_i;
   a.sin_i = a.sin_i * s.upright;
   a.cos_i = sqrt(max(Float(1.0f) - a.sin_i * a.sin_i, Float(1.0e-6f)));
-  a.met = sqrt(max(met2, Float(0.0f))) / a.cos_i;
+  a.met = shade_mean_cosine(a.level_i, s.lean) / a.cos_i;
 }
 
 PELAGE_LANES_FN ShadeAngles shade_angles(const ShadePlace& s, Vec3 to_light) {
@@ -319,11 +334,13 @@ PELAGE_LANES_FN Float shade_own_crossings(const ShadePlace& s, Float grain) {
 }
 
 // How wide what hides is, to eye and light alike, metres: a fiber; of a bundle between one of its fibers, d, and all of them side by side, D, which is what is
-// drawn. They are next to each other more than at random, and maps, which see that of strands, blur bundles over their width. The geometric mean is what is measured
+// drawn. They are next to each other more than at random, and maps, which see that of strands, blur bundles over their width. d^2/3 D^1/3 is what is measured
 // (docs/derivations/dual_scattering.md).
 PELAGE_LANES_FN Float shade_hiding_width(const ShadeConstants& k, const ShadePlace& s) {
   if (!k.bundled) return s.width;
-  return sqrt(s.width * (s.width + Float(2.0f) * s.bundle.wide * s.bundle.coverage));
+  const Float side_by_side = s.width + Float(2.0f) * s.bundle.wide * s.bundle.coverage;
+  return max(s.width, Float(1.0e-9f)) *
+         m_exp(Float(0.33333333f) * m_log(max(side_by_side / max(s.width, Float(1.0e-9f)), Float(1.0f))));
 }
 
 // By how many widths of what hides the ways to eye and light part, across the fiber, where the light's has one crossing more.
@@ -362,10 +379,19 @@ PELAGE_LANES_FN Float shade_within(const ShadePlace& s, ShadeWay w, Float loss) 
   return Float(1.0f) + (scatter_bundle_visible(s.bundle, w.within, loss) - Float(1.0f)) * w.alone;
 }
 
+// Bundles are not at random either: those of a lock lie before each other, and maps no finer than a bundle do not know of the ways between them. What is
+// outside of a bundle hides less than it would at random, one of many fibers by kBundlesShare, one fiber not at all (docs/derivations/dual_scattering.md).
+const float kBundlesShare = 0.15f;
+
+PELAGE_LANES_FN Float shade_bundles_hide(const ShadePlace& s) {
+  return Float(1.0f) - Float(kBundlesShare) * s.others / (s.others + Float(1.0f));
+}
+
 // Share of the light that comes through where every hair on its way takes the share `loss`.
 PELAGE_LANES_FN Float shade_through(const ShadeConstants& k, const ShadePlace& s, ShadeWay w, Float loss) {
   if (!k.bundled) return scatter_dual_direct(loss * w.outside);
-  return scatter_dual_direct(loss * w.outside * scatter_bundle_clumping(s.bundle, loss)) * shade_within(s, w, loss);
+  const Float taken = loss * w.outside * scatter_bundle_clumping(s.bundle, loss) * shade_bundles_hide(s);
+  return scatter_dual_direct(taken) * shade_within(s, w, loss);
 }
 
 // Share of the light that meets no hair on its way.
@@ -452,13 +478,55 @@ PELAGE_LANES_FN Vec3 shade_probe(const ProbeConstants& probe, const ShadePlace& 
   return shade_glow(probe, s, g.front, even) + shade_glow(probe, s, g.back, even) + s.pelekis.a_rest * even + diffused;
 }
 
+// Light that a place sends to the eye.
+PELAGE_LANES_FN Vec3 shade_lit(const ShadeConstants& k, const ShadePlace& s, Float occlusion) {
+  Vec3 sum(Float(0.0f), Float(0.0f), Float(0.0f));
+  for (const LightConstants& light : k.lights) sum = sum + shade_under(k, s, light);
+  if (k.probe.texels != nullptr) sum = sum + shade_probe(k.probe, s) * occlusion;
+  return sum;
+}
+
+PELAGE_LANES_FN Vec3 shade_straight(const ShadeConstants& k, ShadePlace s, Float occlusion) {
+  shade_toward_eye(k, s);
+  return shade_lit(k, s, occlusion);
+}
+
+// Fibers that lean by δ toward all sides lie on a cone about the center. Where that is wide they are shaded at four places of it, on a narrower one; what
+// is missing of their variance σ² = sin²δ/2 widens the lobes of each. Each counts by what the eye sees of it, its cosine.
+PELAGE_LANES_FN Vec3 shade_leaning(const ShadeConstants& k, const ShadePlace& center, Float occlusion) {
+  const Vec3 up = v_normalize(center.to_eye - center.tangent * dot(center.to_eye, center.tangent)),
+             side = cross(center.tangent, up);
+  const Float left = min(center.lean, max(Float(kLeansLittle), Float(kLeanLeft) * center.lean));
+  // Places at half right angles to the eye: each coordinate has a variance of half the square of this sine.
+  const Float half2 = center.lean - left, along = sqrt(half2), straight = sqrt(max(Float(1.0f) - half2 - half2, Float(0.0f)));
+  Vec3 sum(Float(0.0f), Float(0.0f), Float(0.0f));
+  Float seen(0.0f);
+  for (const Float x : {along, Float(0.0f) - along})
+    for (const Float y : {along, Float(0.0f) - along}) {
+      ShadePlace s = center;
+      s.tangent = v_normalize(center.tangent * straight + up * x + side * y);
+      s.lean = left;
+      shade_toward_eye(k, s);
+      const Float shown = shade_mean_cosine(s.level_o, left) + Float(1.0e-6f);
+      sum = sum + shade_lit(k, s, occlusion) * shown;
+      seen = seen + shown;
+    }
+  return sum * (Float(1.0f) / seen);
+}
+
 // Fills r, g, b of the batch.
 PELAGE_LANES_FN void shade_evaluate(const ShadeConstants& k, ShadeBatch& batch) {
   for (std::size_t i = 0; i < batch.count; i += static_cast<std::size_t>(lanes())) {
     const ShadePlace s = shade_place(k, batch, i);
+    const Float occlusion = load(batch.occlusion.data() + i);
+    const Mask much = s.lean > Float(kLeansLittle);
+    const bool some = k.bundled && any(much), all = some && !any(s.lean <= Float(kLeansLittle));
     Vec3 sum(Float(0.0f), Float(0.0f), Float(0.0f));
-    for (const LightConstants& light : k.lights) sum = sum + shade_under(k, s, light);
-    if (k.probe.texels != nullptr) sum = sum + shade_probe(k.probe, s) * load(batch.occlusion.data() + i);
+    if (!all) sum = shade_straight(k, s, occlusion);
+    if (some) {
+      const Vec3 leaning = shade_leaning(k, s, occlusion);
+      sum = Vec3(select(much, leaning.x, sum.x), select(much, leaning.y, sum.y), select(much, leaning.z, sum.z));
+    }
     store(sum.x, batch.r.data() + i), store(sum.y, batch.g.data() + i), store(sum.z, batch.b.data() + i);
   }
 }
