@@ -108,9 +108,6 @@ PELAGE_LANES_FN ShadeIllumination shade_illuminate(const LightConstants& light, 
   return i;
 }
 
-const float kLeansLittle = 0.04f;  // variance of directions up to which wider lobes do for fibers that lean
-const float kLeanLeft = 0.3f;      // share of it that widens lobes where fibers are shaded at four places of their cone
-
 // A strand where it is seen, and everything about it that does not depend on the light.
 struct ShadePlace {
   Vec3 position, tangent, to_eye;
@@ -214,14 +211,14 @@ struct ShadeAngles {
   Float met;      // of thick hairs: light that fibers meet over that of a fiber with cos_i
 };
 
-// Of fibers that lean by δ toward all sides alike about a center with inclination θ the mean sine of inclination is cos δ sin θ: lobes are looked up
-// there. The mean square of the cosine, by which fibers meet light, is cos²θ + σ²(2 − 3 cos²θ), σ² = sin²δ/2; its root is above the mean cosine by
-// 2 % for δ = 57°, 11 % for 90°, both at θ = 0, where it is most.
+// Of fibers that lean by δ toward all sides alike about a center with inclination θ the mean square of the cosine, by which they meet light and are seen,
+// is cos²θ + σ²(2 − 3 cos²θ), σ² = sin²δ/2. Its root is above the mean cosine by 2 % for δ = 57°, 11 % for 90°, both at θ = 0, where it is most.
 PELAGE_LANES_FN Float shade_mean_cosine(Float cos, Float lean) {
   const Float cos2 = cos * cos;
   return sqrt(max(cos2 + lean * (Float(2.0f) - Float(3.0f) * cos2), Float(0.0f)));
 }
 
+// The mean sine of their inclinations is cos δ sin θ: lobes are looked up there.
 PELAGE_LANES_FN void shade_lean(const ShadePlace& s, ShadeAngles& a) {
   a.level_i = a.cos_i;
   a.sin_i = a.sin_i * s.upright;
@@ -338,9 +335,8 @@ PELAGE_LANES_FN Float shade_own_crossings(const ShadePlace& s, Float grain) {
 // (docs/derivations/dual_scattering.md).
 PELAGE_LANES_FN Float shade_hiding_width(const ShadeConstants& k, const ShadePlace& s) {
   if (!k.bundled) return s.width;
-  const Float side_by_side = s.width + Float(2.0f) * s.bundle.wide * s.bundle.coverage;
-  return max(s.width, Float(1.0e-9f)) *
-         m_exp(Float(0.33333333f) * m_log(max(side_by_side / max(s.width, Float(1.0e-9f)), Float(1.0f))));
+  const Float d = max(s.width, Float(1.0e-9f)), side_by_side = d + Float(2.0f) * s.bundle.wide * s.bundle.coverage;
+  return d * m_exp(Float(0.33333333f) * m_log(side_by_side / d));
 }
 
 // By how many widths of what hides the ways to eye and light part, across the fiber, where the light's has one crossing more.
@@ -357,6 +353,14 @@ PELAGE_LANES_FN Float shade_seen_past(Float n, Float parting, Float grain) {
   return light_shared_crossings(n, parting) - grain * light_shared_crossings(n, parting * grain);
 }
 
+// Bundles are not at random either: those of a lock lie before each other, and maps no finer than a bundle do not know of the ways between them. What is
+// outside of a bundle hides less than it would at random, one of many fibers by kBundlesShare, one fiber not at all (docs/derivations/dual_scattering.md).
+const float kBundlesShare = 0.15f;
+
+PELAGE_LANES_FN Float shade_bundles_hide(const ShadePlace& s) {
+  return Float(1.0f) - Float(kBundlesShare) * s.others / (s.others + Float(1.0f));
+}
+
 PELAGE_LANES_FN ShadeWay shade_way(const ShadeConstants& k, const ShadePlace& s, const LightConstants& light, ShadeAngles a) {
   ShadeWay w{};
   const ShadeCrossings found = shade_crossings(light.opacity, s.position);
@@ -370,6 +374,7 @@ PELAGE_LANES_FN ShadeWay shade_way(const ShadeConstants& k, const ShadePlace& s,
     others = max(n - own * w.alone, Float(0.0f));
   }
   w.outside = others - shade_seen_past(others, parting, grain);
+  if (k.bundled) w.outside = w.outside * shade_bundles_hide(s);
   return w;
 }
 
@@ -379,19 +384,10 @@ PELAGE_LANES_FN Float shade_within(const ShadePlace& s, ShadeWay w, Float loss) 
   return Float(1.0f) + (scatter_bundle_visible(s.bundle, w.within, loss) - Float(1.0f)) * w.alone;
 }
 
-// Bundles are not at random either: those of a lock lie before each other, and maps no finer than a bundle do not know of the ways between them. What is
-// outside of a bundle hides less than it would at random, one of many fibers by kBundlesShare, one fiber not at all (docs/derivations/dual_scattering.md).
-const float kBundlesShare = 0.15f;
-
-PELAGE_LANES_FN Float shade_bundles_hide(const ShadePlace& s) {
-  return Float(1.0f) - Float(kBundlesShare) * s.others / (s.others + Float(1.0f));
-}
-
 // Share of the light that comes through where every hair on its way takes the share `loss`.
 PELAGE_LANES_FN Float shade_through(const ShadeConstants& k, const ShadePlace& s, ShadeWay w, Float loss) {
   if (!k.bundled) return scatter_dual_direct(loss * w.outside);
-  const Float taken = loss * w.outside * scatter_bundle_clumping(s.bundle, loss) * shade_bundles_hide(s);
-  return scatter_dual_direct(taken) * shade_within(s, w, loss);
+  return scatter_dual_direct(loss * w.outside * scatter_bundle_clumping(s.bundle, loss)) * shade_within(s, w, loss);
 }
 
 // Share of the light that meets no hair on its way.
@@ -486,10 +482,14 @@ PELAGE_LANES_FN Vec3 shade_lit(const ShadeConstants& k, const ShadePlace& s, Flo
   return sum;
 }
 
+// The same of a place that is not yet shade_toward_eye().
 PELAGE_LANES_FN Vec3 shade_straight(const ShadeConstants& k, ShadePlace s, Float occlusion) {
   shade_toward_eye(k, s);
   return shade_lit(k, s, occlusion);
 }
+
+const float kLeansLittle = 0.04f;  // variance of directions up to which wider lobes do for fibers that lean
+const float kLeanLeft = 0.3f;      // share of it that widens lobes where fibers are shaded at four places of their cone
 
 // Fibers that lean by δ toward all sides lie on a cone about the center. Where that is wide they are shaded at four places of it, on a narrower one; what
 // is missing of their variance σ² = sin²δ/2 widens the lobes of each. Each counts by what the eye sees of it, its cosine.
